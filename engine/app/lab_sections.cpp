@@ -55,6 +55,7 @@ void tell_errors(const SolveReport& report, const std::optional<ErrorEstimate>& 
   }
   tell_error("  model", report.model_error);
   tell_error("  light", report.light_error);
+  if (report.phase_error) tell_error("  phase", report.phase_error);
   tell_error("Picture", picture);
 }
 
@@ -134,7 +135,7 @@ void draw_frame(const Measured& measured) {
   if (report.path) tell("Solve", formatted("%u voxels, %u rounds", report.path->solid, report.path->rounds));
   for (const std::string& text :
        {report.budget, report.replaced, report.missed, report.stopped, report.advice, report.mesh_warning,
-        report.model_warning, report.size_warning, report.light_warning}) {
+        report.model_warning, report.size_warning, report.phase_warning, report.light_warning}) {
     if (!text.empty()) ImGui::TextWrapped("%s", text.c_str());
   }
 }

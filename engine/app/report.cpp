@@ -101,6 +101,7 @@ Json as_json(const SolveReport& report) {
   json["mesh_error"] = as_json(report.mesh_error);
   json["model_error"] = as_json(report.model_error);
   json["light_error"] = as_json(report.light_error);
+  json["phase_error"] = as_json(report.phase_error);
   json["error"] = as_json(report.error);
   json["advice"] = report.advice;
   json["replaced"] = report.replaced;
@@ -111,6 +112,7 @@ Json as_json(const SolveReport& report) {
   json["mesh_warning"] = report.mesh_warning;
   json["model_warning"] = report.model_warning;
   json["size_warning"] = report.size_warning;
+  json["phase_warning"] = report.phase_warning;
   json["light_warning"] = report.light_warning;
   json["deformed"] = report.deformed;
   return json;
@@ -224,6 +226,7 @@ void tell_levels(std::ostream& out, const RunReport& report) {
   tell_part(out, "  solver ", report.solve.algebraic);
   tell_part(out, "  model  ", report.solve.model_error);
   tell_part(out, "  light  ", report.solve.light_error);
+  tell_part(out, "  phase  ", report.solve.phase_error);
   if (report.solve.certificate) tell_certificate(out, *report.solve.certificate);
   tell_part(out, "shown    ", report.picture.error, "picture");
   if (report.picture.convergence) tell_convergence(out, *report.picture.convergence);
@@ -247,7 +250,7 @@ std::string text_report(const RunReport& report) {
   if (!report.solve.stopped.empty()) out << "failed   " << report.solve.stopped << "\n";
   for (const std::string& warning :
        {report.solve.missed, report.solve.advice, report.solve.mesh_warning, report.solve.model_warning,
-        report.solve.size_warning, report.solve.light_warning, report.solve.deformed}) {
+        report.solve.size_warning, report.solve.phase_warning, report.solve.light_warning, report.solve.deformed}) {
     if (!warning.empty()) out << "warning  " << warning << "\n";
   }
   out << "memory   " << decimals(static_cast<double>(report.engine.peak_device_bytes()) / mebibyte, 0)

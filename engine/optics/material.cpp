@@ -23,7 +23,7 @@ constexpr std::array<std::string_view, gpu::PATTERNS> patterns = {"none",  "vein
                                                                   "rings", "spots", "checker", "layers"};
 constexpr std::string_view allowed_keys =
     "pattern, eta, roughness, period, sharpness, sigma_s_prime, sigma_a, or reflectance, mean_free_path, or sigma_s "
-    "and g in place of sigma_s_prime, and these six after second_";
+    "and g in place of sigma_s_prime, or g beside it, and these six after second_";
 constexpr std::string_view roughness_key = "roughness";
 
 std::string joined(std::span<const std::string_view> names) {
@@ -64,11 +64,18 @@ void check_colour(std::string_view key, const glm::vec3& value) {
   }
 }
 
+void check_g(std::string_view key, const glm::vec3& value) {
+  for (int c = 0; c < 3; ++c) {
+    if (!(std::abs(value[c]) < 1)) bad_field(key, number_text(value[c]), "a number above -1 and below 1");
+  }
+}
+
 // One of the two sets of coefficients, and a colour in place of them, or a phase function beside the absorption.
 struct Set {
   std::string_view prefix;
   glm::vec3& sigma_s_prime;
   glm::vec3& sigma_a;
+  glm::vec3& known_g;
   std::optional<glm::vec3> reflectance = {}, mean_free_path = {}, sigma_s = {}, g = {};
 
   std::string key(std::string_view name) const { return std::string(prefix) + std::string(name); }
@@ -112,10 +119,12 @@ struct Set {
   // The reduced coefficient, if a phase function was given (docs/physics.md, "Similarity relation").
   void reduce() {
     if (sigma_s) check_colour(key("sigma_s"), *sigma_s);
-    for (int c = 0; sigma_s && c < 3; ++c) {
-      if (!(std::abs((*g)[c]) < 1)) bad_field(key("g"), number_text((*g)[c]), "a number above -1 and below 1");
-      sigma_s_prime[c] = (1 - (*g)[c]) * (*sigma_s)[c];
+    if (!g) return;
+    check_g(key("g"), *g);
+    for (int c = 0; c < 3; ++c) {
+      if (sigma_s) sigma_s_prime[c] = (1 - (*g)[c]) * (*sigma_s)[c];
     }
+    known_g = *g;
   }
 };
 
@@ -171,7 +180,7 @@ class Given {
     if (set.reflectance || set.mean_free_path) {
       want(set, {"reflectance", "mean_free_path"});
       refuse(set, {"sigma_s_prime", "sigma_s", "g", "sigma_a"}, "none beside a reflectance");
-    } else if (set.sigma_s || set.g) {
+    } else if (set.sigma_s) {
       want(set, {"sigma_s", "g"});
       refuse(set, {"sigma_s_prime"}, "none beside a sigma_s");
       if (!known) want(set, {"sigma_a"});
@@ -231,14 +240,14 @@ std::string_view pattern_name(const gpu::Material& material) {
 gpu::Material parse_material(std::string_view text) {
   auto parts = split(text, ',');
   const bool starts_with_name = parts[0].find('=') == std::string_view::npos;
-  gpu::Material material{{}, {}, default_eta, gpu::PATTERN_NONE, {}, {}, 10, 1};
+  gpu::Material material{{}, {}, default_eta, gpu::PATTERN_NONE, {}, {}, 10, 1, {}, {}};
   if (starts_with_name) {
     material = named(parts[0]);
     parts.erase(parts.begin());
   }
   const bool had_pattern = material.pattern != gpu::PATTERN_NONE;
-  Set first{"", material.sigma_s_prime, material.sigma_a};
-  Set second{"second_", material.second_sigma_s_prime, material.second_sigma_a};
+  Set first{"", material.sigma_s_prime, material.sigma_a, material.g};
+  Set second{"second_", material.second_sigma_s_prime, material.second_sigma_a, material.second_g};
   Given given;
   for (std::string_view part : parts) {
     const std::size_t at = part.find('=');
@@ -265,16 +274,34 @@ gpu::Material parse_material(std::string_view text) {
   return material;
 }
 
+std::optional<glm::vec3> g_of(const gpu::Material& material) {
+  if (material.pattern != gpu::PATTERN_NONE && material.second_g != material.g) return std::nullopt;
+  return material.g;
+}
+
+std::string phase_warning(const gpu::Material& material, bool measured) {
+  const bool forwards = material.g != glm::vec3(0) || material.second_g != glm::vec3(0);
+  const std::optional<glm::vec3> g = g_of(material);
+  if (!forwards || (g && measured)) return "";
+  const std::string said =
+      "the stated error is that of sigma_s_prime = (1 - g) sigma_s: what the angles of scattering change besides, most "
+      "in bodies that are thin or absorb much (docs/accuracy.md, \"Scattering that goes forwards\"), is not in it";
+  return g ? said + "; at rest, with the correction, walks measure it"
+           : said + ", and walks cannot measure it where g and second_g differ";
+}
+
 void check_material(const gpu::Material& material) {
   check_colour("sigma_s_prime", material.sigma_s_prime);
   check_colour("sigma_a", material.sigma_a);
   check_range("eta", material.eta, {.low = min_eta, .high = max_eta}, "1 to 3");
+  check_g("g", material.g);
   if (material.pattern == gpu::PATTERN_NONE) return;
   if (material.pattern >= gpu::PATTERNS) {
     bad_field("pattern", std::to_string(material.pattern), "0 to " + std::to_string(gpu::PATTERNS - 1));
   }
   check_colour("second_sigma_s_prime", material.second_sigma_s_prime);
   check_colour("second_sigma_a", material.second_sigma_a);
+  check_g("second_g", material.second_g);
   check_range("period", material.period, {.low = 1e-3, .high = 1e6}, "0.001 to 1000000 (mm)");
   check_range("sharpness", material.sharpness, {.low = 1, .high = 1000}, "1 to 1000");
 }

@@ -35,12 +35,19 @@ std::string_view pattern_name(const gpu::Material& material);
 // out (default_eta), the other two are required. Instead of these, "reflectance=0.8/0.6/0.5,mean_free_path=0.5" takes
 // the colour that a thick body shows in white light (engine/optics/colour.h) and 1 / sigma_t, mm, and
 // "sigma_s=20,g=0.9,sigma_a=0.01" the scattering of a phase function of mean cosine g, whose reduced coefficient is
-// (1 - g) sigma_s. "NAME,key=value" overrides a named material. "pattern=veins,period=16,sharpness=14" mixes in
-// second_sigma_s_prime and second_sigma_a, or second_reflectance and second_mean_free_path, or second_sigma_s and
-// second_g. "roughness=0.1" is of the surface (stated_roughness). Throws InputError naming the field, what was found
-// and what is allowed (sigma_s_prime, sigma_a 0 to 1e6, eta in [1, 3], mean_free_path > 0, g above -1 and below 1,
-// roughness in roughness_range; all finite).
+// (1 - g) sigma_s; g beside a sigma_s_prime, or a name, says what that was reduced by. "NAME,key=value" overrides a
+// named material. "pattern=veins,period=16,sharpness=14" mixes in second_sigma_s_prime and second_sigma_a, or
+// second_reflectance and second_mean_free_path, or second_sigma_s and second_g. "roughness=0.1" is of the surface
+// (stated_roughness). Throws InputError naming the field, what was found and what is allowed (sigma_s_prime, sigma_a 0
+// to 1e6, eta in [1, 3], mean_free_path > 0, g above -1 and below 1, roughness in roughness_range; all finite).
 gpu::Material parse_material(std::string_view text);
+
+// Mean cosine of the angle by which light scatters, that of all of the material. Nothing where its two sets differ.
+std::optional<glm::vec3> g_of(const gpu::Material& material);
+
+// What is to be said of a material that scatters forwards or back, as the stated error knows of the reduced coefficient
+// alone; `measured`: walks that know of g do the rest. Empty where there is nothing.
+std::string phase_warning(const gpu::Material& material, bool measured);
 
 // Throws InputError if a coefficient is out of range.
 void check_material(const gpu::Material& material);

@@ -116,6 +116,10 @@ struct SolveReport {
   // What the exitance is off by because the irradiance is (engine/solve/light_error.h); of what is corrected at rest,
   // under lights. Else empty.
   std::optional<ErrorEstimate> light_error;
+  // What the angles of scattering change, which the solution knows by the reduced coefficient alone: what random walks
+  // found the exitance off by beyond all of the above (engine/solve/certificate.h). Of a material that says its g, and
+  // what is corrected at rest; else empty.
+  std::optional<ErrorEstimate> phase_error;
   // All of these together, as far as they are known. Empty where nothing is known of the mesh.
   std::optional<ErrorEstimate> error;
   std::string advice;             // of an error above 5%: where it comes from and what to do; else empty
@@ -130,6 +134,7 @@ struct SolveReport {
   // nothing.
   std::string mesh_warning, model_warning;
   std::string size_warning;                    // of a material on a body of that size (engine/optics/body_size.h)
+  std::string phase_warning;                   // of a material that scatters forwards (engine/optics/material.h)
   std::string light_warning;                   // of lights that stand in the body; empty if none does
   std::string deformed;                        // tets of level 0 that a deformation has spoilt; empty if none is
   std::vector<glm::dvec3> bounces;             // W per channel that each bounce brought in

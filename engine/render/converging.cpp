@@ -98,9 +98,11 @@ void Converging::judge() {
   found_.steps.push_back(step);
   metadata_ = engine_.metadata();
   const ErrorEstimate left = left_by_sweeps(done);
-  const auto all = [](double a, double b, double c, double d) { return std::hypot(a, b, std::hypot(c, d)); };
-  found_.least = picture_error_of(
-      by_parts(all, left, or_none(found_.solve.mesh_error), or_none(found_.solve.algebraic), light_left()));
+  const auto all = [](double a, double b, double c, double d, double e) {
+    return std::hypot(a, b, std::hypot(c, d, e));
+  };
+  found_.least = picture_error_of(by_parts(all, left, or_none(found_.solve.mesh_error), or_none(found_.solve.algebraic),
+                                           light_left(), or_none(found_.solve.phase_error)));
   found_.reached = step.error.whole <= found_.wanted;
   if (found_.reached) return;
   const double gain = step.error.whole - found_.least;
@@ -148,7 +150,12 @@ std::string Converging::limit(double whole) const {
   const double sweeps = of_picture(left_by_sweeps(*found_.solve.correction)), noise = found_.steps.back().noise;
   const std::string said =
       percent_text(whole) + " is reached, and more sweeps and samples would leave " + percent_text(found_.least) + ": ";
-  const double most = std::max({mesh, light, sweeps, noise, angle});
+  const double phase = of_picture(or_none(found_.solve.phase_error));
+  const double most = std::max({mesh, light, sweeps, noise, angle, phase});
+  if (most == phase) {
+    return said + "what scattering forwards changes is " + percent_text(phase) +
+           ", of which the solver knows the reduced coefficient alone";
+  }
   if (most == mesh) {
     return said + "the mesh's part is " + percent_text(mesh) +
            "; a finer file has less: of more vertices where the material changes within its triangles, and of bake "

@@ -217,7 +217,7 @@ SolveReport Engine::solve(const SolveOptions& options, const std::function<void(
   if (self.report->correction && !options.warm && !self.lights.empty()) {
     self.interruptible([&] { self.state_light_error(options); });
   }
-  if (self.report->correction && !options.warm && options.certify > 0) {
+  if (self.report->correction && !options.warm && (options.certify > 0 || self.simulation->scatters_by_angle())) {
     self.interruptible([&] { self.simulation->certify(options, *self.report, check); });
   }
   if (!by_path) self.report->size_warning = size_warning(self.material, self.of_text, self.simulation->chord());

@@ -50,9 +50,14 @@ std::string advice(const SolveReport& report) {
   };
   if (most(report.error) <= large) return "";
   const double mesh = most(report.mesh_error), solver = most(report.algebraic), model = most(report.model_error);
-  const double light = most(report.light_error);
+  const double light = most(report.light_error), phase = most(report.phase_error);
   const std::string off = "the error is stated as " + percent_text(most(report.error)) + ", most of it ";
   if (!report.correction && mesh >= solver) return off + "the mesh's: a correction would take most of that away";
+  if (phase > std::max({mesh, solver, model, light})) {
+    return off +
+           "that of scattering forwards, of which the solver knows the reduced coefficient alone: no option brings "
+           "it down";
+  }
   if (light > std::max({mesh, solver, model})) {
     return off + "the light's: fewer lights have finer shadow maps";
   }

@@ -21,11 +21,14 @@ constexpr std::uint64_t counts_at = gpu::CERTIFY_SUMS * FIXED_WORDS * gpu::WALK_
 // Of the light that enters a walk counts with one part in so many, whatever it stands for.
 constexpr double unit_parts = 1048576;
 
-constexpr double first_walks = 3e4;    // of a round, from which the speed is known
-constexpr double longest_round = 0.4;  // s
-constexpr double most_walks = 1e7;     // of a round
-constexpr double most_noise = 0.3;     // of the power of a part of which anything is said
-constexpr double standard_errors = 3;  // from which on a difference is no chance
+constexpr double first_walks = 3e4;     // of a round, from which the speed is known
+constexpr double fixed_walks = 2e4;     // of a round, where no time is given, or fewer that cross
+constexpr double fixed_segments = 1e7;  // so many tets together
+constexpr double longest_round = 0.4;   // s
+constexpr double most_walks = 1e7;      // of a round
+constexpr double most_noise = 0.3;      // of the power of a part of which anything is said
+constexpr double chance = 2;            // standard errors within which what was measured tells nothing
+constexpr double standard_errors = 3;   // from which on a difference is no chance
 
 double sum(const glm::dvec3& v) {
   return v.x + v.y + v.z;
@@ -150,6 +153,7 @@ void Certifier::round(const CertifiedSolution& solution, double walks, std::uint
                         .scale = work.scale.address(),
                         .leaving = leaving_.address() + batch * level.face_count * sum_bytes,
                         .sums = sums_.address(),
+                        .g = solution.g,
                         .walk = glm::vec3(3.0 / walks * entered),
                         .unit = glm::vec3(entered / unit_parts),
                         .rays = 1,
@@ -187,15 +191,17 @@ Certificate Certifier::run(const CertifiedSolution& solution, double seconds, st
     return std::chrono::duration<double>(Clock::now() - before).count();
   };
   Made made;
-  double walks = first_walks;
+  const bool timed = seconds > 0;
+  double walks = timed ? first_walks : fixed_walks / batches;
   round(solution, walks, 0, seed, made);
   double took = since(start);
-  forget(solution.work);
+  if (!timed) walks = std::min(fixed_walks, walks * fixed_segments / std::max(made.segments, 1.0));
   made = {};
+  forget(solution.work);
   for (std::uint32_t number = 0; number < batches || since(start) + 0.5 * took < seconds; ++number) {
     if (check) check();
     const double wanted = std::clamp(seconds / (2 * batches), 0.02, longest_round);
-    if (number % batches == 0) walks = std::clamp(walks * wanted / took, first_walks / 8, most_walks);
+    if (timed && number % batches == 0) walks = std::clamp(walks * wanted / took, first_walks / 8, most_walks);
     const Clock::time_point before = Clock::now();
     round(solution, walks, number % batches, seed + number + 1, made);
     took = since(before);
@@ -211,6 +217,8 @@ Certificate Certifier::judge(const CertifiedSolution& solution, const Made& made
   const auto words = device::download<std::uint32_t>(solution.work.recorder.device(), leaving_);
   const auto leaving = powers(words, glm::dvec3(solution.scale.scale));
   const SurfaceParts parts = surface_parts(surface, solution.scale.unlit);
+  // What little angles divide is not the same by the reduced coefficient: all that leaves is.
+  const float direct = solution.g == glm::vec3(0) ? 0.0f : 1.0f;
   const auto part_of = [&](const auto& taken) {
     PartSums sums;
     for (std::size_t f = 0; f < faces; ++f) {
@@ -218,7 +226,7 @@ Certificate Certifier::judge(const CertifiedSolution& solution, const Made& made
       PartSums::Patch& patch = sums.patches[patch_[f]];
       const double area = surface.area[f];
       patch.area += area;
-      patch.solved += area * glm::dvec3(surface.exitance[f]);
+      patch.solved += area * glm::dvec3(surface.exitance[f] + direct * surface.unscattered[f]);
       for (std::size_t b = 0; b < batches; ++b) patch.walked[b] += leaving[b * faces + f] / made.weight[b];
     }
     return sums;
@@ -245,6 +253,20 @@ void state_disagreement(SolveReport& report) {
     if (!part.empty()) text += (text.empty() ? "" : ", ") + part;
   }
   found.disagreement = text.empty() ? "" : "random walks contradict the stated error: " + text;
+}
+
+void add_phase_error(SolveReport& report) {
+  if (!report.certificate || !report.error) return;
+  const Certificate& found = *report.certificate;
+  const auto beyond = [](const CertifiedPart& part, double stated) {
+    const bool told = part.error - chance * part.error_noise > stated;
+    return told ? std::sqrt(part.error * part.error - stated * stated) : 0;
+  };
+  report.phase_error = ErrorEstimate{.whole = beyond(found.whole, report.error->whole),
+                                     .unlit = beyond(found.unlit, report.error->unlit),
+                                     .dimmest = beyond(found.dimmest, report.error->dimmest)};
+  report.error =
+      by_parts([](double all, double part) { return std::hypot(all, part); }, *report.error, *report.phase_error);
 }
 
 }  // namespace quadgraph

@@ -23,6 +23,7 @@ struct CertifiedSolution {
   const SurfaceField& surface;  // position and normal are not looked at
   gpu::Scale scale;             // of the light
   glm::dvec3 entered;           // W
+  glm::vec3 g;                  // mean cosine of the angle by which light scatters
 };
 
 class Certifier {
@@ -33,7 +34,8 @@ class Certifier {
   // `level`: the finest, whose faces stay what they are.
   Certifier(device::Device& device, const Level& level);
 
-  // Walks for about so long. `check` is called every half a second at the latest; what it throws ends it.
+  // Walks for about so long; 0: a number of them that does not depend on the machine. `check` is called every half a
+  // second at the latest; what it throws ends it.
   Certificate run(const CertifiedSolution& solution, double seconds, std::uint32_t seed,
                   const std::function<void()>& check);
 
@@ -57,5 +59,8 @@ class Certifier {
 // Says where what is stated of a report's error is less than what its certificate measured, by more than three standard
 // errors and what the estimate leaves open (mesh_error.h).
 void state_disagreement(SolveReport& report);
+
+// States what walks that knew of g have found beyond all that is stated, and adds it to that.
+void add_phase_error(SolveReport& report);
 
 }  // namespace quadgraph

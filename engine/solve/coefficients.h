@@ -7,6 +7,7 @@
 
 #include "engine/base/solve_options.h"
 #include "engine/optics/edit.h"
+#include "engine/optics/material.h"
 #include "engine/reference/resolution.h"
 #include "engine/solve/assembly.h"
 #include "engine/solve/level_buffers.h"
@@ -35,6 +36,12 @@ class Coefficients {
   void check() const;
 
   float eta() const { return eta_; }
+
+  // Mean cosine of the angle by which light scatters; 0 where it is not known, or not the same everywhere.
+  glm::vec3 g() const { return material_ ? g_of(*material_).value_or(glm::vec3(0)) : glm::vec3(0); }
+  std::string phase_warning(bool measured) const {
+    return material_ ? quadgraph::phase_warning(*material_, measured) : "";
+  }
 
   // Whether the coefficients are the same everywhere.
   bool even() const { return material_ && material_->pattern == gpu::PATTERN_NONE && edits_.edits.empty(); }

@@ -114,6 +114,8 @@ void Simulation::make_room(const SolveOptions& options, bool gather) {
 SolveReport Simulation::solve(const SolveOptions& options, const std::function<void()>& check,
                               const std::function<void(bool)>& light) {
   SolveReport report = implementation_->solve(options, check, light);
+  const bool measured = report.correction && !options.warm;
+  report.phase_warning = implementation_->coefficients.phase_warning(measured);
   if (!options.warm && report.correction) state_medium_error(options, report);
   return report;
 }
@@ -182,6 +184,10 @@ void Simulation::state_medium_error(const SolveOptions& options, SolveReport& re
   });
 }
 
+bool Simulation::scatters_by_angle() const {
+  return implementation_->coefficients.g() != glm::vec3(0);
+}
+
 void Simulation::certify(const SolveOptions& options, SolveReport& report, const std::function<void()>& check) {
   Implementation& self = *implementation_;
   report.certificate = made(self.certifier, self.device, self.shape)
@@ -191,9 +197,13 @@ void Simulation::certify(const SolveOptions& options, SolveReport& report, const
                                  .field = self.correction->field(),
                                  .surface = surface_field(),
                                  .scale = device::download<gpu::Scale>(self.device, self.work.scale)[0],
-                                 .entered = report.energy.entered},
+                                 .entered = report.energy.entered,
+                                 .g = self.coefficients.g()},
                                 options.certify, options.sweep_seed, check);
+  if (scatters_by_angle()) add_phase_error(report);
   state_disagreement(report);
+  state_missed(report, options.error);
+  report.advice = advice(report);
   self.passes = self.work.recorder.passes();
 }
 

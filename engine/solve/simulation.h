@@ -132,8 +132,11 @@ class Simulation {
   // The error of the light, of what was said there, and with it all that `report`, of that solve, says of its error.
   void state_light_error(const SolveOptions& options, SolveReport& report);
 
-  // Random walks for options.certify seconds, after all else is said of the error in `report`, of that solve. `check`
-  // as of `solve`.
+  // Whether a material says its g, which `certify` measures without being asked for.
+  bool scatters_by_angle() const;
+
+  // Random walks for options.certify seconds, or a number of them, after all else is said of the error in `report`, of
+  // that solve. `check` as of `solve`.
   void certify(const SolveOptions& options, SolveReport& report, const std::function<void()>& check);
 
   // To be called where work of the device was given up half-way (device::Interruptible): keeps what was set, and

@@ -31,7 +31,9 @@ std::string material_json(const std::string& text) {
             {"sigma_a", triple_json(material.sigma_a)},
             {"eta", real_json(material.eta)},
             {"pattern", pattern_name(material)}};
+  if (material.g != glm::vec3(0)) json["g"] = triple_json(material.g);
   if (material.pattern != gpu::PATTERN_NONE) {
+    if (material.second_g != glm::vec3(0)) json["second_g"] = triple_json(material.second_g);
     json["second_sigma_s_prime"] = triple_json(material.second_sigma_s_prime);
     json["second_sigma_a"] = triple_json(material.second_sigma_a);
     json["period"] = real_json(material.period);

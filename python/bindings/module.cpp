@@ -182,6 +182,7 @@ py::dict as_dict(const SolveReport& report) {
   d["mesh_warning"] = report.mesh_warning;
   d["model_warning"] = report.model_warning;
   d["size_warning"] = report.size_warning;
+  d["phase_warning"] = report.phase_warning;
   d["light_warning"] = report.light_warning;
   d["deformed"] = report.deformed;
   d["exchange_age"] = report.exchange_age;
@@ -194,6 +195,7 @@ py::dict as_dict(const SolveReport& report) {
   d["mesh_error"] = error_dict(report.mesh_error);
   d["model_error"] = error_dict(report.model_error);
   d["light_error"] = error_dict(report.light_error);
+  d["phase_error"] = error_dict(report.phase_error);
   d["error"] = error_dict(report.error);
   d["advice"] = report.advice;
   return d;

@@ -60,6 +60,10 @@ struct Material {
   vec3 second_sigma_a;        // 1/mm
   float period;               // mm from one vein, cloud, band, ring, spot or cell to the next; depth of the upper layer
   float sharpness;            // >= 1, larger: thinner veins and rings, harder edges of clouds, bands, spots and layers
+  // Mean cosine of the angle by which light scatters, where that is known, above -1 and below 1; sigma_s_prime is
+  // reduced by it.
+  vec3 g;
+  vec3 second_g;
 };
 
 #ifndef __cplusplus

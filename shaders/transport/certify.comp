@@ -7,16 +7,17 @@ layout(local_size_x = WORKGROUP_SIZE) in;
 
 // Random walks of the light of one beam, one channel each, until they leave the body or are absorbed: transport itself,
 // of the tets and their coefficients, without bias. What leaves is added up by face, before chance decides whether it
-// does (next-event estimation at the surface).
+// does (next-event estimation at the surface). Light scatters by the phase function of Henyey and Greenstein.
 struct CertifyPush {
   TransportFieldRefs field;  // one
   Beams beam;                // one
   Floats beam_q;             // of all
   Scales scale;
-  Uints leaving;  // fixed point, per face: power that leaves there and has scattered
+  Uints leaving;  // fixed point, per face: power that leaves there and has scattered; with any g all that leaves
   // Fixed point, WALK_SUMS times CERTIFY_SUMS: absorbed; left unscattered; given up. Behind them WALK_SUMS times two plain
   // numbers: walks, and tets that they crossed.
   Uints sums;
+  vec3 g;         // mean cosine of the angle by which light scatters
   vec3 walk;      // power that a walk stands for, scaled; 0 in a channel without light
   vec3 unit;      // power that it counts with, scaled
   uint rays;      // a face, as of TransportWalkPush
@@ -30,6 +31,7 @@ TransportFieldRef field;
 #define BODY field.body
 #include "source/fixed_point.glsl"
 #include "transport/entering_light.glsl"
+#include "transport/phase_function.glsl"
 
 vec3 given_up;
 bool scattered;  // the present walk has
@@ -38,11 +40,6 @@ uint walks, crossed;
 // Optical depth to the next collision.
 float free_depth() {
   return -log(1.0 - uniform_number(state));
-}
-
-vec3 any_direction() {
-  float z = 2.0 * uniform_number(state) - 1.0, azimuth = 6.2831853 * uniform_number(state);
-  return vec3(sqrt(1.0 - z * z) * vec2(cos(azimuth), sin(azimuth)), z);
 }
 
 // Ends a ray of little power by chance, without bias.
@@ -58,7 +55,7 @@ void meet_surface(inout Ray ray, uint face) {
   if (BODY.face_kinds.at[face] == FACE_OPEN) {
     float reflected = internal_reflectance(cosine, BODY.eta);
     vec3 leaving = (1.0 - reflected) * ray.power;
-    if (scattered) {
+    if (scattered || push.g != vec3(0)) {
       add_power(push.leaving, face, leaving);
     } else {
       unscattered += leaving;
@@ -74,15 +71,21 @@ void meet_surface(inout Ray ray, uint face) {
   ray.direction = normalize(ray.direction - 2.0 * cosine * n);
 }
 
-// At an optical depth `depth` of the way through the present tet.
-void collide(inout Ray ray, uint channel, Optical optical, Exit exit, float depth) {
-  vec4 l = max(ray.at.l + depth / extinction(optical)[channel] * exit.rate, vec4(0));
+// sigma_s, not reduced, and sigma_a, 1/mm.
+vec2 coefficients_in(uint tet, uint channel) {
+  Optical optical = optical_in(tet);
+  return vec2(optical.sigma_s_prime[channel] / (1.0 - push.g[channel]), optical.sigma_a[channel]);
+}
+
+// After a path through the present tet.
+void collide(inout Ray ray, uint channel, float albedo, Exit exit, float path) {
+  vec4 l = max(ray.at.l + path * exit.rate, vec4(0));
   ray.at.l = l / (l.x + l.y + l.z + l.w);
   ray.at.barred = vec4(0);
-  vec3 kept = ray.power * albedo(optical);
+  vec3 kept = albedo * ray.power;
   absorbed += ray.power - kept;
   ray.power = kept;
-  ray.direction = any_direction();
+  ray.direction = scattered_from(ray.direction, push.g[channel], state);
   scattered = true;
 }
 
@@ -93,10 +96,10 @@ void wander(Ray ray, uint channel) {
     Exit exit = find_exit(ray.at, ray.direction);
     if (!exit.found) break;
     ++crossed;
-    Optical optical = optical_in(ray.at.tet);
-    float tau = extinction(optical)[channel] * exit.path;
+    vec2 sigma = coefficients_in(ray.at.tet, channel);
+    float sigma_t = sigma.x + sigma.y, tau = sigma_t * exit.path;
     if (tau > depth) {
-      collide(ray, channel, optical, exit, depth);
+      collide(ray, channel, sigma.x / sigma_t, exit, depth / sigma_t);
       depth = free_depth();
       thin_out(ray, channel);
     } else {

@@ -52,12 +52,21 @@ std::string inter_reflection_text(const SolveOptions& options, const SolveReport
 
 }  // namespace
 
+namespace {
+
+std::string scattering_text(const std::string& prefix, const glm::vec3& sigma_s_prime, const glm::vec3& g) {
+  const std::string known = g == glm::vec3(0) ? "" : "," + prefix + "g=" + rgb_text(g);
+  return prefix + "sigma_s_prime=" + rgb_text(sigma_s_prime) + known;
+}
+
+}  // namespace
+
 std::string material_text(const gpu::Material& material) {
-  std::string text = "sigma_s_prime=" + rgb_text(material.sigma_s_prime) + ",sigma_a=" + rgb_text(material.sigma_a) +
-                     ",eta=" + number_text(material.eta);
+  std::string text = scattering_text("", material.sigma_s_prime, material.g) +
+                     ",sigma_a=" + rgb_text(material.sigma_a) + ",eta=" + number_text(material.eta);
   if (material.pattern != gpu::PATTERN_NONE) {
-    text += ",pattern=" + std::string(pattern_name(material)) +
-            ",second_sigma_s_prime=" + rgb_text(material.second_sigma_s_prime) +
+    text += ",pattern=" + std::string(pattern_name(material)) + "," +
+            scattering_text("second_", material.second_sigma_s_prime, material.second_g) +
             ",second_sigma_a=" + rgb_text(material.second_sigma_a) + ",period=" + number_text(material.period) +
             ",sharpness=" + number_text(material.sharpness);
   }

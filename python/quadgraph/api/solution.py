@@ -160,11 +160,12 @@ class Solution:
     taken from the rest; error: estimate of the whole error, with algebraic, the solver's part, mesh_error, the mesh's,
     after a correction at rest with what a material costs that changes within tets, and model_error, the model's, of
     each what a correction leaves, light_error, that of shadows and of the sampling of lights and skies, after a
-    correction at rest, and None where it cannot be told; advice: of an error above 5%, where it comes from and what to
+    correction at rest, and None where it cannot be told; phase_error, what scattering by angle changes besides, of a
+    material that says its g; advice: of an error above 5%, where it comes from and what to
     do; inter_reflection: whether it was followed; bounces: (n, 3) W that each brought in; unmet: what was asked for and
     is not met, in words; missed: of that, the error; stopped: of that, how the solve did not converge; budget: what the
     bake of the file has to say of the error that was asked for; mesh_warning, model_warning, size_warning,
-    light_warning, deformed: what else is to be said against the answer; exchange_age: solves by which what some face
+    phase_warning, light_warning, deformed: what else is to be said against the answer; exchange_age: solves by which what some face
     sees is behind the shape; correction: what sweeps did, None without; certificate: what random walks measured, None
     without `certify`; path: of the method shortest-path, which has no levels, energy balance and estimates. Texts are
     empty where there is nothing to say.
@@ -185,6 +186,7 @@ class Solution:
     mesh_error: ErrorEstimate | None
     model_error: ErrorEstimate | None
     light_error: ErrorEstimate | None
+    phase_error: ErrorEstimate | None
     error: ErrorEstimate | None
     advice: str
     inter_reflection: bool
@@ -196,6 +198,7 @@ class Solution:
     mesh_warning: str
     model_warning: str
     size_warning: str
+    phase_warning: str
     light_warning: str
     deformed: str
     exchange_age: int
@@ -214,6 +217,7 @@ class Solution:
             "mesh_error": report["mesh_error"] and ErrorEstimate(**report["mesh_error"]),
             "model_error": report["model_error"] and ErrorEstimate(**report["model_error"]),
             "light_error": report["light_error"] and ErrorEstimate(**report["light_error"]),
+            "phase_error": report["phase_error"] and ErrorEstimate(**report["phase_error"]),
             "error": report["error"] and ErrorEstimate(**report["error"]),
             "bounces": np.array(report["bounces"]).reshape(-1, 3),
             "unmet": tuple(report["unmet"]),

@@ -24,6 +24,7 @@ _WARNINGS = (
     "mesh_warning",
     "model_warning",
     "size_warning",
+    "phase_warning",
     "light_warning",
     "deformed",
     "missed",

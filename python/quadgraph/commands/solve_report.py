@@ -72,6 +72,8 @@ def error_text(report: dict) -> str:
         parts.append(f"model {parts_text(report['model_error'])}, after {correction_text(report['correction'])}")
     if report["light_error"]:
         parts.append(f"light {parts_text(report['light_error'])}")
+    if report["phase_error"]:
+        parts.append(f"phase function {parts_text(report['phase_error'])}")
     if report["error"] is None:
         return f"error: of the mesh not estimated (a single level); {'; '.join(parts)} (estimate)"
     parts.insert(0, f"mesh {parts_text(report['mesh_error'])}")
@@ -150,7 +152,8 @@ def solver_texts(report: dict) -> list[str]:
     texts += [path_text(report["path"])] if report.get("path") else []
     if report["replaced"]:
         texts.append(f"solver: {report['replaced']}")
-    against = ("missed", "advice", "mesh_warning", "model_warning", "size_warning", "light_warning", "deformed")
+    warnings = [f"{name}_warning" for name in ("mesh", "model", "size", "phase", "light")]
+    against = ("missed", "advice", *warnings, "deformed")
     texts += [f"warning: {report[name]}" for name in against if report.get(name)]
     if report["stopped"]:
         texts.append(f"failed: {report['stopped']}")

@@ -120,13 +120,31 @@ TEST_CASE("scattering of a mean cosine is reduced by it, channel by channel") {
   CHECK(parse_material("marble,pattern=veins,second_sigma_s=4,second_g=0.75,second_sigma_a=1").second_sigma_s_prime ==
         glm::vec3(1));
   check_refused("sigma_s=20,sigma_a=0", "'g': found 'nothing'");
-  check_refused("g=0.5,sigma_a=0", "'sigma_s': found 'nothing'");
+  check_refused("g=0.5,sigma_a=0", "'sigma_s_prime': found 'nothing'");
   check_refused("sigma_s=20,g=0.9", "'sigma_a': found 'nothing'");
   check_refused("sigma_s=20,g=1,sigma_a=0", "above -1 and below 1");
   check_refused("sigma_s=-1,g=0,sigma_a=0", "'sigma_s'");
   check_refused("sigma_s=20,g=0.9,sigma_s_prime=2,sigma_a=0", "none beside a sigma_s");
   check_refused("sigma_s=20,g=0.9,reflectance=0.5,mean_free_path=1", "none beside a reflectance");
   check_refused("marble,second_sigma_s=4,second_g=0", "one beside a pattern");
+}
+
+TEST_CASE("a material keeps the mean cosine by which it was reduced, and says where no walk can go by it") {
+  CHECK(parse_material("sigma_s=20/10/5,g=0.9/0.8/-0.5,sigma_a=0.01").g == glm::vec3(0.9f, 0.8f, -0.5f));
+  const gpu::Material skin = parse_material("skin1,g=0.8");
+  CHECK(skin.sigma_s_prime == parse_material("skin1").sigma_s_prime);
+  CHECK(*g_of(skin) == glm::vec3(0.8f));
+  CHECK(phase_warning(skin, true).empty());
+  CHECK(phase_warning(skin, false).find("at rest") != std::string::npos);
+  CHECK(phase_warning(parse_material("skin1"), false).empty());
+  const gpu::Material both = parse_material("marble-veins,g=0.5,second_g=0.5");
+  CHECK(*g_of(both) == glm::vec3(0.5f));
+  const gpu::Material either = parse_material("marble-veins,g=0.5");
+  CHECK_FALSE(g_of(either));
+  CHECK(phase_warning(either, true).find("differ") != std::string::npos);
+  gpu::Material wrong = skin;
+  wrong.g = glm::vec3(0, 1, 0);
+  CHECK_THROWS_AS(check_material(wrong), InputError);
 }
 
 TEST_CASE("what cannot be a material is refused by the field") {

@@ -50,6 +50,30 @@ TEST_CASE("where nothing is absorbed, walks bring out all of the light, whatever
   }
 }
 
+TEST_CASE(
+    "where nothing is absorbed, scattering forwards brings out all of the light, too, and the error knows of it") {
+  Scene scene({8, 4});
+  gpu::Material material{};
+  material.sigma_s_prime = {0.3f, 1.0f, 3.0f};
+  material.sigma_a = glm::vec3(0);
+  material.eta = 1.3f;
+  material.g = {0.9f, 0.6f, -0.5f};
+  scene.simulation.set_material(material);
+  CHECK(scene.simulation.scatters_by_angle());
+  scene.light([](const glm::vec3& normal) { return normal.z > 0.5f ? glm::vec3(1) : glm::vec3(0); });
+  const SolveOptions options{.correction = true, .sweeps = 1, .sweep_points = 2000};
+  SolveReport report = scene.simulation.solve(options);
+  const double before = report.error->whole;
+  scene.simulation.certify(options, report, {});
+  const Certificate& found = *report.certificate;
+  CHECK(std::abs(found.whole.power) < 0.004 + 6 * found.whole.power_noise);
+  CHECK(found.whole.power_noise < 0.01);
+  CHECK(found.given_up == 0);
+  CHECK(report.phase_warning.empty());
+  CHECK(std::hypot(before, report.phase_error->whole) == doctest::Approx(report.error->whole));
+  CHECK(report.error->whole >= found.whole.error);
+}
+
 TEST_CASE("channels are walked by themselves, and one without light has no walks") {
   Scene scene({8, 4});
   gpu::Material material{};

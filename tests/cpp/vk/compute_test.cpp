@@ -22,7 +22,9 @@ gpu::Material veined() {
           .second_sigma_s_prime = {1.0f, 1.2f, 1.1f},
           .second_sigma_a = {0.05f, 0.04f, 0.06f},
           .period = 20.0f,
-          .sharpness = 4.0f};
+          .sharpness = 4.0f,
+          .g = {},
+          .second_g = {}};
 }
 
 }  // namespace

@@ -18,7 +18,10 @@ from shapes import icosphere, join, moved
 
 pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
 mesh_walk = pytest.importorskip("quadgraph_validation.truth.mesh_walk", reason="needs the extra walks")
+monte_carlo = pytest.importorskip("quadgraph_validation.truth.monte_carlo")
 unseen_cases = pytest.importorskip("quadgraph_validation.bodies.unseen_cases")
+
+Medium = pytest.importorskip("quadgraph_validation.bodies.media").Medium
 
 SUN = DirectionalLight((0.0, 0.0, -1.0), 1.0)
 BATCHES, WALKS = 10, 40_000
@@ -72,6 +75,44 @@ def test_its_powers_are_those_of_other_walks(tmp_path, case):
         assert noise < 0.02
         assert found.power_noise < 0.02
         assert abs(found.power - expected) < Z * np.hypot(found.power_noise, noise * (1 + expected)), name
+
+
+RADIUS, ALBEDO, ETA = 3.0, 0.6, 1.3  # reduced mean free paths; a dark, thin body
+
+
+def out_of_ball(g: float, edge: float, seed: int) -> np.ndarray:
+    """(2,) shares of what enters a ball of a reduced coefficient that leave it, everywhere and behind z = edge."""
+    medium = Medium(ALBEDO / (1 - g), 1 - ALBEDO)
+    exits = monte_carlo.through_sphere(medium, RADIUS, ETA, 400_000, np.random.default_rng(seed), g)
+    return np.array([len(exits.position), (exits.position[:, 2] < edge).sum()]) / 400_000
+
+
+def test_scattering_forwards_is_measured_and_stated(tmp_path):
+    """Against walks in the round ball, all that leaves; that of triangles is thinner, and its terminator two degrees wide."""
+    path = write_levels(tmp_path / "ball.qgraph", [icosphere(4, RADIUS), icosphere(3, RADIUS)])
+    with quadgraph.Engine(path, device="cpu") as engine:
+        engine.lights = [SUN]
+        engine.material = quadgraph.Material(ALBEDO, 1 - ALBEDO, ETA, g=0.9)
+        solution, field = engine.solve(certify=1.5), engine.surface()
+        assert engine.solve(correction=False).phase_warning
+        engine.material = quadgraph.Material(ALBEDO, 1 - ALBEDO, ETA)
+        reduced = engine.solve()
+    certificate = solution.certificate
+    q = field.q.sum(axis=1)
+    unlit = q < 0.1 * np.average(q, weights=field.area)
+    edge = (field.position[unlit, 2].max() + field.position[~unlit, 2].min()) / 2
+    leaves = field.area * (field.exitance + field.unscattered)[:, 0]
+    truths = monte_carlo.entering_sphere(RADIUS, ETA) * out_of_ball(0.9, edge, 1)
+    whole = leaves.sum() / (1 + certificate.whole.power)
+    behind = leaves[unlit].sum() / (1 + certificate.unlit.power)
+    assert abs(whole / truths[0] - 1) < 0.015 + Z * certificate.whole.power_noise
+    assert abs(behind / truths[1] - 1) < 0.03 + Z * certificate.unlit.power_noise
+    assert abs(leaves.sum() / truths[0] - 1) > 0.05  # by the reduced coefficient
+    assert solution.phase_error.unlit > 0.3 > 0.03 > reduced.error.unlit
+    assert reduced.phase_error is None
+    assert solution.error.unlit > solution.phase_error.unlit
+    assert certificate.disagreement == solution.phase_warning == ""
+    assert "scattering forwards" in solution.advice
 
 
 def test_it_finds_how_far_off_a_coarse_body_is(tmp_path):
