@@ -88,7 +88,7 @@ def out_of_ball(g: float, edge: float, seed: int) -> np.ndarray:
 
 
 def test_scattering_forwards_is_measured_and_stated(tmp_path):
-    """Against walks in the round ball, all that leaves; that of triangles is thinner, its terminator two degrees wide."""
+    """Against walks in the round ball, all that leaves; that of triangles is thinner, and its terminator wide."""
     path = write_levels(tmp_path / "ball.qgraph", [icosphere(4, RADIUS), icosphere(3, RADIUS)])
     with quadgraph.Engine(path, device="cpu") as engine:
         engine.lights = [SUN]
