@@ -19,9 +19,8 @@ void check_level(const Level& level, std::size_t bodies, const std::string& file
   }
   if (bodies == 0) return;
   if (level.tet_bodies.size() != level.tets.size()) {
-    fail_format(
-        file, section,
-        std::to_string(level.tet_bodies.size()) + " rows, expected " + std::to_string(level.tets.size()));
+    fail_format(file, section,
+                std::to_string(level.tet_bodies.size()) + " rows, expected " + std::to_string(level.tets.size()));
   }
   std::vector<bool> present(bodies, false);
   for (std::size_t t = 0; t < level.tet_bodies.size(); ++t) {

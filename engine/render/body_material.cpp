@@ -24,8 +24,7 @@ std::vector<gpu::Optical> coefficients(const Level& level, std::span<const glm::
     std::vector<glm::vec3> places;
     for (std::uint32_t row : rows[body]) places.push_back(points[row]);
     const BodyMaterial& material = materials[body];
-    const std::vector<float> depths =
-        material.wants_depth ? depth_below_surface(level, places) : std::vector<float>{};
+    const std::vector<float> depths = material.wants_depth ? depth_below_surface(level, places) : std::vector<float>{};
     const std::vector<gpu::Optical> found = material.at(places, depths);
     for (std::size_t k = 0; k < found.size(); ++k) optical[rows[body][k]] = found[k];
   }

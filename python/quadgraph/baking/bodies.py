@@ -20,7 +20,7 @@ from quadgraph.base import outputs
 from quadgraph.base.errors import InputError, ToolError
 from quadgraph.base.progress import ProgressCallback
 from quadgraph.file import joined, sections
-from quadgraph.mesh import front, mesh_io, mesh_size
+from quadgraph.mesh import front, mesh_io, mesh_size, named_parts
 from quadgraph.mesh.surface import FileFrame, SourceMesh
 from quadgraph.tets import exchange, ordering
 from quadgraph.tets.graph import Graph
@@ -34,7 +34,7 @@ class BodyMesh:
     """A mesh file as one of several bodies.
 
     name: 1 to 64 bytes without control characters, "=", "/" and "~"; unit, height_mm, longest_mm, up and wrap: as of
-    BakeOptions.
+    BakeOptions; part: of the file, by its name (`quadgraph.mesh.named_parts`), at the size of the whole file.
     """
 
     name: str
@@ -45,6 +45,7 @@ class BodyMesh:
     longest_mm: float | None = None
     up: str = "y"
     wrap: float | str | None = None
+    part: str | None = None
 
 
 def bake_bodies(
@@ -110,6 +111,16 @@ def meshes_as_they_lie(meshes: Sequence[Path], options: BakeOptions) -> list[Bod
     return [BodyMesh(mesh.stem, mesh, placement, "mm", up=options.up, wrap=options.wrap) for mesh in meshes]
 
 
+def parts_as_bodies(mesh: Path, options: BakeOptions) -> list[BodyMesh]:
+    """The parts of a file that names some, as bodies where they lie. Raises InputError, also for one part alone."""
+    read = mesh_io.read_surface(mesh, unit="mm", up=options.up)  # complains of all that is wrong
+    found = sorted(set(named_parts.names(mesh).tolist()))
+    if len(found) < 2:
+        raise InputError(f"{mesh}: parts: one found, {found[0]!r}, of {read.triangles:,} triangles; leave them out")
+    sizes = {name: getattr(options, name) for name in ("unit", "height_mm", "longest_mm", "up", "wrap")}
+    return [BodyMesh(name, mesh, part=name, **sizes) for name in found]
+
+
 def _telling(body: BodyMesh, tell: ProgressCallback) -> ProgressCallback:
     return lambda text: tell(f"{body.name}: {text}")
 
@@ -139,7 +150,7 @@ def _prepared(body: BodyMesh, options: BakeOptions, report: BakeReport, tell: Pr
         front=0.0,
     )
     with _reporting(body, report) as of_body:
-        made = pipeline.prepare(body.mesh, own, of_body, _telling(body, tell))
+        made = pipeline.prepare(body.mesh, own, of_body, _telling(body, tell), body.part)
     return replace(made, surface=body.placement.of(made.surface))
 
 
@@ -209,6 +220,7 @@ def _metadata(body: BodyMesh, prepared: Prepared, made: Sequence[Level]) -> dict
     low, high = prepared.surface.vertices.min(axis=0), prepared.surface.vertices.max(axis=0)
     return {
         "name": body.name,
+        "part": body.part,
         "source": prepared.source.metadata(),
         "unit_mm": prepared.source.unit_mm,
         "position": list(body.placement.position),

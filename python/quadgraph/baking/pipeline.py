@@ -174,12 +174,13 @@ def naming(mesh: str | Path) -> Iterator[None]:
         raise ToolError(f"{mesh}: {error}") from error
 
 
-def prepare(mesh: Path, options: BakeOptions, report: BakeReport, tell: ProgressCallback) -> Prepared:
-    """Read, wrap where that is asked for, and repair. Raises InputError, and ToolError where the wrap fails."""
+def prepare(
+    mesh: Path, options: BakeOptions, report: BakeReport, tell: ProgressCallback, part: str | None = None
+) -> Prepared:
+    """Read a mesh or a part of it, wrap it if that is asked for, repair. Raises InputError; of the wrap ToolError."""
     with report.timed("read"):
-        source = mesh_io.read_surface(
-            mesh, unit=options.unit, height_mm=options.height_mm, longest_mm=options.longest_mm, up=options.up
-        )
+        size = {name: getattr(options, name) for name in ("unit", "height_mm", "longest_mm", "up")}
+        source = mesh_io.read_surface(mesh, part=part, **size)
     if source.size_note:
         report.notes.append(source.size_note)
     tell(f"read {source.name}: {source.vertices:,} vertices, {source.triangles:,} triangles")

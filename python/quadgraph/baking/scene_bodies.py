@@ -16,7 +16,8 @@ from quadgraph.base.errors import InputError
 from quadgraph.base.units import UNITS_MM, UPS
 from quadgraph.mesh.mesh_names import SUFFIXES, is_mesh
 
-_MEMBERS = ("name", "mesh", "unit", "height", "longest", "up", "wrap", "position", "rotation", "scale", "material")
+_LIES = ("position", "rotation", "scale")
+_MEMBERS = ("name", "mesh", "part", "unit", "height", "longest", "up", "wrap", *_LIES, "material")
 _SIZES = {"unit": "unit", "height": "height_mm", "longest": "longest_mm"}  # as BodyMesh has them
 
 
@@ -70,7 +71,8 @@ def _body(entry: Any, where: str, folder: Path) -> BodyMesh:
         if name not in _MEMBERS:
             raise InputError(f"{where}/{name}: unknown, allowed are {', '.join(_MEMBERS)}")
     mesh = _mesh(entry, where, folder)
-    name = _text(entry, where, "name", mesh.stem, f"a text of 1 to {MOST_NAME_BYTES} bytes")
+    part = _text(entry, where, "part", "", "the name of a part of the mesh file") if "part" in entry else None
+    name = _text(entry, where, "name", mesh.stem if part is None else part, f"a text of 1 to {MOST_NAME_BYTES} bytes")
     sizes = [size for size in _SIZES if size in entry]
     if len(sizes) > 1:
         _refuse(f"{where}/{sizes[1]}", entry[sizes[1]], f"one of {', '.join(_SIZES)}, and {sizes[0]} is there")
@@ -79,7 +81,7 @@ def _body(entry: Any, where: str, folder: Path) -> BodyMesh:
         _triple(entry, where, "position"), _triple(entry, where, "rotation"), _number(entry, where, "scale", 1.0)
     )
     up = _one_of(entry.get("up", "y"), f"{where}/up", UPS)
-    return BodyMesh(name, mesh, placement, **given, up=up, wrap=_wrap(entry, where))
+    return BodyMesh(name, mesh, placement, **given, up=up, wrap=_wrap(entry, where), part=part)
 
 
 def _mesh(entry: dict[str, Any], where: str, folder: Path) -> Path:

@@ -41,6 +41,11 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "they share; the size is that of all together",
     )
     parser.add_argument(
+        "--parts",
+        action="store_true",
+        help="the named parts of a mesh file, objects of OBJ or nodes of glTF, as the bodies of one file",
+    )
+    parser.add_argument(
         "-o",
         "--output",
         metavar="FILE",

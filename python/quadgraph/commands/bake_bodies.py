@@ -20,7 +20,7 @@ _OF_ONE = ("surface_only", "error", "material", "light")
 
 def is_asked(args: argparse.Namespace) -> bool:
     """Whether the arguments are of several bodies in one file."""
-    return args.join or (len(args.mesh) == 1 and scene_file.is_scene(args.mesh[0]))
+    return args.join or args.parts or (len(args.mesh) == 1 and scene_file.is_scene(args.mesh[0]))
 
 
 def run(args: argparse.Namespace, options: BakeOptions) -> BakeReport:
@@ -33,15 +33,19 @@ def run(args: argparse.Namespace, options: BakeOptions) -> BakeReport:
     for name in _OF_ONE:
         if getattr(args, name):
             raise InputError(f"--{name.replace('_', '-')}: found with several bodies, which it cannot be said of")
-    placed = _joined(args, options) if args.join else _of_scene(args)
+    placed = _of_meshes(args, options) if args.join or args.parts else _of_scene(args)
     errors = Console(stderr=True, highlight=False)
     with errors.status(f"baking {len(placed)} bodies"):
         return bake_bodies(placed, args.output, options, lambda text: errors.print(text, markup=False, soft_wrap=True))
 
 
-def _joined(args: argparse.Namespace, options: BakeOptions) -> list[BodyMesh]:
-    from quadgraph.baking.bodies import meshes_as_they_lie
+def _of_meshes(args: argparse.Namespace, options: BakeOptions) -> list[BodyMesh]:
+    from quadgraph.baking.bodies import meshes_as_they_lie, parts_as_bodies
 
+    if args.parts:
+        if args.join or len(args.mesh) > 1:
+            raise InputError("--parts: found with several files, one whose parts are bodies is wanted; or --join")
+        return parts_as_bodies(args.mesh[0], options)
     return meshes_as_they_lie(bake_many.files_in(args.mesh), options)
 
 

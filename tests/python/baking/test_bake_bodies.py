@@ -9,11 +9,12 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from quadgraph.baking import kept, scene_bodies
-from quadgraph.baking.bodies import BodyMesh, bake_bodies, meshes_as_they_lie
+from quadgraph.baking.bodies import BodyMesh, bake_bodies, meshes_as_they_lie, parts_as_bodies
 from quadgraph.baking.pipeline import BakeOptions, bake
 from quadgraph.baking.placing import BodyPlacement, check_apart
 from quadgraph.base.errors import InputError
 from quadgraph.file import qgraph_file
+from quadgraph.mesh import named_parts
 from shapes import cube, icosphere, join, moved, torus, write_obj
 
 _core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
@@ -178,3 +179,47 @@ def test_the_bodies_of_a_scene_are_baked_once(meshes, tmp_path, monkeypatch):
     assert body(material="jade") == first
     assert not told
     assert body(position=[1, 0, 0]) != first
+
+
+def write_parts(path):
+    """An OBJ of two objects, or a GLB of two nodes: a lid and a pot."""
+    import trimesh
+
+    lid, pot = moved(cube(2.0), 0, 10, 0), icosphere(2, 4.0)
+    if path.suffix == ".glb":
+        scene = trimesh.Scene()
+        for name, shape in (("lid", lid), ("pot", pot)):
+            scene.add_geometry(trimesh.Trimesh(shape.vertices, shape.triangles), node_name=name)
+        path.write_bytes(scene.export(file_type="glb"))
+        return path
+    both = join(lid, pot)
+    text = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in both.vertices]
+    faces = [f"f {a} {b} {c}" for a, b, c in both.triangles + 1]
+    path.write_text("\n".join([*text, "o lid", *faces[:12], "o pot", *faces[12:]]))
+    return path
+
+
+@pytest.mark.parametrize("ending", ["obj", "glb"])
+def test_named_parts_of_a_file_are_bodies(ending, tmp_path):
+    mesh = write_parts(tmp_path / f"pot.{ending}")
+    options = BakeOptions(longest_mm=30.0, visibility_rays=0)  # of the whole, which is 15 units high
+    placed = parts_as_bodies(mesh, options)
+    assert [body.name for body in placed] == ["lid", "pot"]
+    bake_bodies(placed, tmp_path / "pot.qgraph", options)
+    boxes = {body["name"]: body["box_mm"] for body in qgraph_file.read(tmp_path / "pot.qgraph").metadata["bodies"]}
+    assert np.allclose(boxes["lid"], [[-2, 18, -2], [2, 22, 2]], atol=1e-4)
+    assert np.allclose(np.ptp(boxes["pot"], axis=0), 16, atol=0.6)
+    found = scene_bodies.read({"bodies": [{"mesh": mesh.name, "part": "lid", "unit": "cm"}]}, tmp_path)
+    assert (found.meshes[0].name, found.meshes[0].part) == ("lid", "lid")
+
+
+def test_parts_that_are_not_there_are_named(tmp_path):
+    mesh = write_parts(tmp_path / "pot.obj")
+    with pytest.raises(InputError, match=r"part: 'top' found, the file has 'lid', 'pot'"):
+        bake_bodies([BodyMesh("top", mesh, part="top")], tmp_path / "x.qgraph", BakeOptions())
+    alone = write_obj(cube(2.0), tmp_path / "cube.obj")
+    with pytest.raises(InputError, match="parts: one found"):
+        parts_as_bodies(alone, BakeOptions())
+    (tmp_path / "cube.stl").write_bytes(b"solid x\nendsolid x\n")
+    with pytest.raises(InputError, match=r"stl' file names no parts"):
+        named_parts.names(tmp_path / "cube.stl")

@@ -8,7 +8,6 @@ import pytest
 from quadgraph import AmbientLight, DirectionalLight, Engine, Material
 from quadgraph.baking.bodies import BodyMesh, bake_bodies
 from quadgraph.baking.pipeline import BakeOptions
-from quadgraph.baking.placing import BodyPlacement, joined
 from quadgraph.mesh.surface import Surface
 from quadgraph_validation.bodies.unseen_cases import UnseenMedium
 from shapes import icosphere, torus, write_obj
@@ -29,7 +28,7 @@ WALKS, BATCHES = 40_000, 12
 def ring() -> Surface:
     """About the x axis, from NEXT on."""
     turned = torus(6.5, 2.5, 64, 32).vertices[:, [2, 0, 1]]
-    return Surface(turned + [NEXT + 2.5, 0, 0], torus(6.5, 2.5, 64, 32).triangles)
+    return Surface(turned + np.array([NEXT + 2.5, 0, 0]), torus(6.5, 2.5, 64, 32).triangles)
 
 
 @pytest.fixture(scope="module")
