@@ -56,11 +56,12 @@ void check_materials(std::span<const BodyMaterial> materials, std::span<const st
 
 }  // namespace
 
-BodyMaterial body_material(const gpu::Material& material, std::string text) {
-  check_material(material);
+BodyMaterial body_material(const std::string& text) {
+  const gpu::Material material = parse_material(text);
   const bool layered = material.pattern == gpu::PATTERN_LAYERS;
-  return {.text = std::move(text),
+  return {.text = text,
           .eta = material.eta,
+          .roughness = stated_roughness(text).value_or(default_roughness),
           .wants_depth = layered,
           .at = [material, layered](std::span<const glm::vec3> points, std::span<const float> depths) {
             std::vector<gpu::Optical> optical;
@@ -96,6 +97,7 @@ void Engine::set_materials(std::span<const BodyMaterial> materials) {
   self.material = text_of(materials, bodies);
   self.certainty = {};
   self.eta = materials[0].eta;
+  self.body_roughness.emplace(self.device, self.graph, materials);
   self.stale();
 }
 

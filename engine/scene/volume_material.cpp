@@ -23,7 +23,7 @@ glm::dvec3 centre_of_body(const Level& level, std::uint32_t body) {
 
 BodyMaterial material_of_body(const QuadGraph& graph, std::uint32_t body, const std::string& text) {
   const std::optional<VolumeName> name = volume_name(text);
-  if (!name) return body_material(parse_material(text), text);
+  if (!name) return body_material(text);
   if (name->map) {
     throw InputError("a map found of a volume for one of several bodies, allowed is a volume that lies there as it is");
   }

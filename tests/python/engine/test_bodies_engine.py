@@ -129,6 +129,31 @@ def test_a_volume_lies_about_the_middle_of_its_body(baked, tmp_path):
     assert found[place[:, 0] > 13].mean() < 0.5 * found[place[:, 0] < 8].mean()
 
 
+def specular(path, **members) -> np.ndarray:
+    """What both surfaces mirror of a sky and a lamp, (64, 96): `left` first."""
+    picture = {"width": 96, "height": 64, "ground": False} | members.pop("picture", {})
+    lights = ["environment:studio:0:1", "directional:-0.2,-0.3,-1:1"]
+    camera = {"azimuth": 0, "elevation": 0}
+    with Stage() as stage:
+        stage.show(Scene(path, lights=lights, camera=camera, picture=picture, solver={"correction": False}, **members))
+        stage.solve()
+        return np.asarray(stage.render().specular).sum(axis=2)
+
+
+def test_each_body_is_as_rough_as_its_material_says(baked):
+    smooth, rough = f"{WHITE},roughness=0.05", f"{WHITE},roughness=0.6"
+    both = specular(baked["near"], materials={"left": smooth, "right": rough})
+    evenly = {name: specular(baked["near"], material=text) for name, text in (("smooth", smooth), ("rough", rough))}
+    left, right = np.s_[:, :46], np.s_[:, 50:]
+    for side, name, other in ((left, "smooth", "rough"), (right, "rough", "smooth")):
+        assert np.abs(both[side] - evenly[name][side]).max() < 1e-3 * evenly[name][side].max()
+        assert np.abs(both[side] - evenly[other][side]).max() > 0.1 * evenly[other][side].max()
+    said = specular(baked["near"], materials={"left": smooth, "right": rough}, picture={"roughness": 0.6})
+    assert np.abs(said - evenly["rough"]).max() < 1e-3 * said.max()
+    swapped = specular(baked["turned"], materials={"left": smooth, "right": rough})
+    assert np.abs(swapped - both).max() < 0.02 * both.max()
+
+
 REFUSED = {
     "a name": ({"left": WHITE, "rigth": RED}, "rigth"),
     "one index each": ({"left": WHITE, "right": "sigma_s_prime=1,sigma_a=1,eta=1.5"}, "one index of refraction"),
