@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 from typing import TYPE_CHECKING
 
 from rich.console import Console
@@ -35,7 +36,8 @@ def run(args: argparse.Namespace, options: BakeOptions) -> BakeReport:
             raise InputError(f"--{name.replace('_', '-')}: found with several bodies, which it cannot be said of")
     placed = _of_meshes(args, options) if args.join or args.parts else _of_scene(args)
     errors = Console(stderr=True, highlight=False)
-    with errors.status(f"baking {len(placed)} bodies"):
+    named = contextlib.nullcontext() if args.join or args.parts else scene_file.naming(args.mesh[0])
+    with named, errors.status(f"baking {len(placed)} bodies"):
         return bake_bodies(placed, args.output, options, lambda text: errors.print(text, markup=False, soft_wrap=True))
 
 

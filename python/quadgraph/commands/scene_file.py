@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console
 
 from quadgraph.base import json_text, regular_file
-from quadgraph.base.errors import InputError
+from quadgraph.base.errors import InputError, ToolError
 from quadgraph.core import load_core
 
 if TYPE_CHECKING:
@@ -52,6 +52,15 @@ def content(path: Path) -> Any:
         return None
 
 
+@contextlib.contextmanager
+def naming(path: Path) -> Iterator[None]:
+    """Let errors of a bake begin with the name of the scene."""
+    try:
+        yield
+    except (InputError, ToolError) as error:
+        raise type(error)(f"{path}: {error}") from error
+
+
 def meshes_of(path: Path) -> list[BodyMesh]:
     """The bodies of a scene of meshes, as `opened` bakes them. Raises InputError, also for a scene of a baked body."""
     document = json_text.loads(regular_file.read_bytes(path)) if path.is_file() else content(path)
@@ -80,6 +89,6 @@ def _baked(path: Path, document: dict[str, Any]) -> Iterator[dict[str, Any]]:
         errors.print(text, markup=False)
 
     with contextlib.ExitStack() as stack:
-        with errors.status(f"baking {path.name}, once for these meshes, sizes and places"):
+        with naming(path), errors.status(f"baking {path.name}, once for these meshes, sizes and places"):
             body = stack.enter_context(kept.bodies_of(path, found.meshes, tell))
         yield found.with_body(body)

@@ -29,7 +29,7 @@ TEST_CASE("a material goes to the body that was chosen, or to all") {
 TEST_CASE("a named material gets the index of the bodies that stay as they are") {
   State state;
   take_bodies(state, {"cup", "stone"});
-  state.scene.material = "marble";  // 1.5
+  state.scene.material = "marble";                     // 1.5
   CHECK(at_index_of_others(state, "jade") == "jade");  // of all bodies
   state.body = "stone";
   CHECK(at_index_of_others(state, "wood") == "wood");  // which has the same

@@ -246,4 +246,4 @@ def test_a_scene_of_meshes_is_baked_and_rendered(mesh, tmp_path, capsys, monkeyp
     document["bodies"][1]["position"] = [1, 0, 0]
     scene.write_text(json.dumps(document))
     assert cli.main(["render", str(scene), "-o", str(picture)]) != 0
-    assert "left and right cut or touch" in capsys.readouterr().err
+    assert f"{scene}: bodies: left and right cut or touch" in capsys.readouterr().err

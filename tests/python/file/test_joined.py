@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import tiny
+import two_cubes
 from baked import write_levels
 from quadgraph.base.errors import FormatError, InputError
 from quadgraph.file import joined, qgraph_file, sections
@@ -149,6 +150,16 @@ def test_what_cannot_be_joined_is_said(parts):
         joined.join([parts[1], parts[1]])
     with pytest.raises(InputError, match="257 found, at most 256"):
         joined.join([parts[1]] * 257)
+
+
+def test_golden_bytes_of_two_bodies(tmp_path):
+    file = qgraph_file.read(two_cubes.PATH)
+    content = {name: array for name, array in file.sections.items() if name != "metadata"}
+    qgraph_file.write(tmp_path / "again.qgraph", file.metadata, content)
+    assert (tmp_path / "again.qgraph").read_bytes() == two_cubes.PATH.read_bytes()
+    for name, array in two_cubes.all_sections().items():
+        np.testing.assert_allclose(array, content[name], atol=1e-6, err_msg=name)
+    assert _core.load(two_cubes.PATH).bodies == list(two_cubes.NAMES)
 
 
 def test_files_without_bodies_are_one_without_a_name():
