@@ -66,7 +66,9 @@ class Engine:
         levels, (low, high) = self._open.graph.levels, self.box
         parts = [f"{' x '.join(f'{each:.4g}' for each in high - low)} mm"]
         parts += [f"{len(levels[0].tets):,} tets, {len(levels)} level{'s' * (len(levels) > 1)}"] if levels else []
-        if (material := self._material) is not None:
+        if self._materials:
+            parts.append(f"materials of {', '.join(self._materials)}")
+        elif (material := self._material) is not None:
             parts.append(f"material {material}" if isinstance(material, str) else f"a {type(material).__name__}")
         parts += [f"{len(self._lights)} light{'s' * (len(self._lights) != 1)}"] if self._lights else []
         parts += [f"solved by {self._solution.method}"] if self._solution else []

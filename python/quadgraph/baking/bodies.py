@@ -26,6 +26,7 @@ from quadgraph.tets import exchange, ordering
 from quadgraph.tets.graph import Graph
 
 MOST_NAME_BYTES = 64
+LEAST_VERTICES = 4  # of a surface: a tetrahedron's
 _NAME_MARKS = "=/~"  # at which command lines and paths into scenes would split a name
 
 
@@ -34,7 +35,8 @@ class BodyMesh:
     """A mesh file as one of several bodies.
 
     name: 1 to 64 bytes without control characters, "=", "/" and "~"; unit, height_mm, longest_mm, up and wrap: as of
-    BakeOptions; part: of the file, by its name (`quadgraph.mesh.named_parts`), at the size of the whole file.
+    BakeOptions; part: of the file, by its name (`quadgraph.mesh.named_parts`), at the size of the whole file;
+    surface_vertices: of this body, None for what BakeOptions say of all.
     """
 
     name: str
@@ -46,6 +48,7 @@ class BodyMesh:
     up: str = "y"
     wrap: float | str | None = None
     part: str | None = None
+    surface_vertices: int | None = None
 
 
 def bake_bodies(
@@ -68,7 +71,8 @@ def bake_bodies(
     made = []
     for body, each in zip(bodies, prepared, strict=True):
         with _reporting(body, report) as of_body:
-            made.append(pipeline.make_levels(each.surface, options, of_body, _telling(body, tell)))
+            own = replace(options, surface_vertices=body.surface_vertices or options.surface_vertices)
+            made.append(pipeline.make_levels(each.surface, own, of_body, _telling(body, tell)))
     _write(bodies, prepared, made, options, report)
     report.seconds["total"] = time.perf_counter() - start
     return report
@@ -85,6 +89,9 @@ def check(bodies: Sequence[BodyMesh], options: BakeOptions) -> None:
             raise InputError(f"bodies/{number}/name: '{body.name}' found twice, each body has a name of its own")
         names.add(body.name)
         body.placement.check(f"bodies/{number}/")
+        if body.surface_vertices is not None and body.surface_vertices < LEAST_VERTICES:
+            raise InputError(f"bodies/{number}/surface_vertices: {body.surface_vertices} found, allowed are "
+                             f"{LEAST_VERTICES} and more")  # fmt: skip
     if options.mesher == "polygrid":
         raise InputError("mesher: 'polygrid' found with several bodies, allowed are 'tetgen' and 'cgal'")
 
@@ -226,6 +233,7 @@ def _metadata(body: BodyMesh, prepared: Prepared, made: Sequence[Level]) -> dict
         "position": list(body.placement.position),
         "rotation": list(body.placement.rotation),
         "scale": body.placement.scale,
+        "surface_vertices": body.surface_vertices,
         "box_mm": [low.tolist(), high.tolist()],
         "tets": len(made[0].graph.tets),
         "volume_mm3": made[0].graph.volume,

@@ -17,7 +17,7 @@ from quadgraph.base.units import UNITS_MM, UPS
 from quadgraph.mesh.mesh_names import SUFFIXES, is_mesh
 
 _LIES = ("position", "rotation", "scale")
-_MEMBERS = ("name", "mesh", "part", "unit", "height", "longest", "up", "wrap", *_LIES, "material")
+_MEMBERS = ("name", "mesh", "part", "unit", "height", "longest", "up", "wrap", "surface_vertices", *_LIES, "material")
 _SIZES = {"unit": "unit", "height": "height_mm", "longest": "longest_mm"}  # as BodyMesh has them
 
 
@@ -80,8 +80,12 @@ def _body(entry: Any, where: str, folder: Path) -> BodyMesh:
     placement = BodyPlacement(
         _triple(entry, where, "position"), _triple(entry, where, "rotation"), _number(entry, where, "scale", 1.0)
     )
+    vertices = entry.get("surface_vertices")
+    if vertices is not None and (isinstance(vertices, bool) or not isinstance(vertices, int)):
+        _refuse(f"{where}/surface_vertices", vertices, "a whole number")
     up = _one_of(entry.get("up", "y"), f"{where}/up", UPS)
-    return BodyMesh(name, mesh, placement, **given, up=up, wrap=_wrap(entry, where), part=part)
+    wrap = _wrap(entry, where)
+    return BodyMesh(name, mesh, placement, **given, up=up, wrap=wrap, part=part, surface_vertices=vertices)
 
 
 def _mesh(entry: dict[str, Any], where: str, folder: Path) -> Path:

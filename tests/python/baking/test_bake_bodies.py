@@ -69,6 +69,19 @@ def test_one_body_of_a_file_is_as_it_bakes_alone(meshes, tmp_path):
             assert np.array_equal(array, named[name]), name
 
 
+def test_a_body_may_be_solved_on_fewer_vertices_than_another(meshes, tmp_path):
+    beside = BodyPlacement((21, 0, 0))
+    placed = [
+        BodyMesh("ring", meshes["ring"], unit="mm", surface_vertices=120),
+        BodyMesh("other", meshes["ring"], beside, "mm"),
+    ]
+    bake_bodies(placed, tmp_path / "two.qgraph", BakeOptions(visibility_rays=0))
+    level = _core.load(tmp_path / "two.qgraph").levels[0]
+    faces = np.bincount(level.tet_bodies[level.face_tets])
+    assert faces[0] == pytest.approx(240, rel=0.1)
+    assert faces[1] == 2 * 32 * 16
+
+
 def test_the_same_bodies_give_the_same_bytes(meshes, tmp_path):
     for name in ("a", "b"):
         beside = BodyPlacement((12, 0, 0))
@@ -139,6 +152,11 @@ WRONG = {
     "a place": ({"bodies": [{"mesh": "ball.obj", "position": [1, 2]}]}, r"^/bodies/0/position: found"),
     "no number": ({"bodies": [{"mesh": "ball.obj", "rotation": [0, True, 0]}]}, r"^/bodies/0/rotation: found"),
     "infinity": ({"bodies": [{"mesh": "ball.obj", "position": [0, 0, float("inf")]}]}, r"^/bodies/0/position: "),
+    "half a vertex": (
+        {"bodies": [{"mesh": "ball.obj", "surface_vertices": 9.5}]},
+        r"^/bodies/0/surface_vertices: found '9.5'",
+    ),
+    "no vertices": ({"bodies": [{"mesh": "ball.obj", "surface_vertices": 0}]}, r"^/bodies/0/surface_vertices: 0 found"),
     "no size": ({"bodies": [{"mesh": "ball.obj", "scale": 0}]}, r"^/bodies/0/scale: 0.0 found"),
     "a name": ({"bodies": [{"mesh": "ball.obj", "name": "a/b"}]}, r"^/bodies/0/name: 'a/b' found"),
     "names": ({"bodies": [{"mesh": "ball.obj"}, {"mesh": "ball.obj"}]}, r"^/bodies/1/name: 'ball' found twice"),

@@ -180,6 +180,7 @@ def test_bodies_without_a_material_and_files_without_bodies_are_named(baked):
         engine.material = WHITE
         engine.materials = {"left": Material(1.0, 0.1)}
         assert engine.materials == {"left": Material(1.0, 0.1)}
+        assert "materials of left" in repr(engine)
         with pytest.raises(InputError, match="shortest-path: coefficients are given per node"):
             engine.solve(method="shortest-path")
         engine.material = RED
