@@ -38,7 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("-o", "--output", type=Path, required=True, metavar="OUT", help="the sheet, .png or .jpg")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write a report of each picture here")
-    scene_options.add_run_arguments(parser, scene_options.RENDER_GROUPS, without=("material", "map"))
+    scene_options.add_run_arguments(parser, scene_options.RENDER_GROUPS, without=("material", "material-of", "map"))
     parser.set_defaults(size=f"{_SIDE}x{_SIDE}")
 
 
