@@ -1,4 +1,5 @@
 // What the viewer does while its body is a preview: it listens, and changes over to the body once that is baked.
+#include "engine/app/body_choice.h"
 #include "engine/app/viewer.h"
 #include "engine/base/error.h"
 
@@ -43,6 +44,7 @@ void Viewer::change_over(const std::filesystem::path& body) {
 void Viewer::take_up_body() {
   const auto& graph = engine().graph();
   state_.front = graph.front();
+  take_bodies(state_, graph.bodies());
   state_.methods = graph.levels().empty() ? std::vector<Method>{} : methods_of(graph.levels()[0]);
 }
 

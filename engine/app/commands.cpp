@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "engine/app/body_choice.h"
 #include "engine/app/modes.h"
 #include "engine/optics/material.h"
 #include "engine/scene/gestures.h"
@@ -50,10 +51,10 @@ void next_light(S s, W) {
 
 void next_material(S s, int by) {
   const auto& names = material_names();
-  const auto found = std::find(names.begin(), names.end(), s.scene.material);
+  const auto found = std::find(names.begin(), names.end(), chosen_material(s));
   const auto count = static_cast<int>(names.size());
   const int now = found == names.end() ? (by > 0 ? -1 : 0) : static_cast<int>(found - names.begin());
-  s.scene.material = names[static_cast<std::size_t>((now + by + count) % count)];
+  choose_material(s, at_index_of_others(s, names[static_cast<std::size_t>((now + by + count) % count)]));
 }
 
 // The one after `value`, in a circle.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "engine/app/body_choice.h"
 #include "engine/app/material_look.h"
 #include "engine/app/panel_widgets.h"
 #include "engine/optics/material.h"
@@ -19,7 +20,7 @@ constexpr float least_mm = 0.02f, most_mm = 50;  // of how far light goes
 
 // As rough as its name says.
 void take(State& state, const std::string& name) {
-  state.scene.material = name;
+  choose_material(state, at_index_of_others(state, name));
   state.scene.render.roughness.reset();
 }
 
@@ -47,19 +48,30 @@ void draw_swatches(State& state, float unit) {
   int at = 0;
   for (const Swatch& swatch : swatches()) {
     if (at++ % swatches_in_row != 0) ImGui::SameLine();
-    const bool chosen = state.scene.material == swatch.name;
+    const bool chosen = chosen_material(state) == swatch.name;
     if (swatch_button(swatch, chosen, {wide, 22 * unit})) take(state, swatch.name);
   }
   ImGui::PopStyleVar();
 }
 
+// Of several bodies the one whose material is changed.
+void draw_bodies(State& state) {
+  if (state.bodies.size() < 2) return;
+  if (!ImGui::BeginCombo("Body", state.body.empty() ? "All" : state.body.c_str())) return;
+  if (ImGui::Selectable("All", state.body.empty())) state.body.clear();
+  for (const std::string& body : state.bodies) {
+    if (ImGui::Selectable((body + "##body").c_str(), body == state.body)) state.body = body;
+  }
+  ImGui::EndCombo();
+}
+
 void draw_preset(State& state) {
   const auto& names = material_names();
-  const auto found = std::find(names.begin(), names.end(), state.scene.material);
+  const auto found = std::find(names.begin(), names.end(), chosen_material(state));
   const char* shown = found == names.end() ? "Custom" : found->c_str();
   if (!ImGui::BeginCombo("Preset", shown, ImGuiComboFlags_HeightLarge)) return;
   for (const std::string& name : names) {
-    const bool chosen = name == state.scene.material;
+    const bool chosen = name == chosen_material(state);
     if (ImGui::Selectable(name.c_str(), chosen)) take(state, name);
     if (chosen) ImGui::SetItemDefaultFocus();
   }
@@ -68,29 +80,29 @@ void draw_preset(State& state) {
 
 // What is changed here makes a material of one colour of the one that was there, as rough as that.
 void draw_look(State& state) {
-  if (const auto look = look_of(state.scene.material)) {
+  if (const auto look = look_of(chosen_material(state))) {
     MaterialLook changed = *look;
     const bool other_colour = colour_button("Colour##material", changed.colour);
     const bool other_distance = slide("Light goes", changed.distance, least_mm, most_mm, "%.2f mm", true);
     if (other_colour || other_distance) {
       auto& asked = state.scene.render.roughness;
-      if (!asked) asked = stated_roughness(state.scene.material);
-      state.scene.material = material_of(changed);
+      if (!asked) asked = stated_roughness(chosen_material(state));
+      choose_material(state, material_of(changed));
     }
   }
   auto& asked = state.scene.render.roughness;
-  float roughness = asked.value_or(stated_roughness(state.scene.material).value_or(default_roughness));
+  float roughness = asked.value_or(stated_roughness(chosen_material(state)).value_or(default_roughness));
   if (slide("Roughness", roughness, roughness_range, "%.2f")) asked = roughness;
 }
 
 void draw_text(State& state) {
-  if (!ImGui::IsAnyItemActive()) state.material_text = state.scene.material;
+  if (!ImGui::IsAnyItemActive()) state.material_text = chosen_material(state);
   ImGui::PushItemWidth(-1);
   if (ImGui::InputTextWithHint("##text", "marble,sigma_a=.01/.02/.05", &state.material_text,
                                ImGuiInputTextFlags_EnterReturnsTrue)) {
     try {
       check_material_text(state.material_text);
-      state.scene.material = state.material_text;
+      choose_material(state, state.material_text);
       state.say("");
     } catch (const std::exception& error) {
       state.say(error.what(), true);
@@ -103,6 +115,7 @@ void draw_text(State& state) {
 
 void draw_material(State& state, float unit) {
   if (!section("Material")) return;
+  draw_bodies(state);
   draw_preset(state);
   draw_swatches(state, unit);
   draw_look(state);

@@ -49,9 +49,11 @@ struct Uncut {
 
 struct State {
   Scene scene;
-  std::vector<Method> methods;  // that the file's levels serve
-  float front = 0;              // of the body, degrees
-  std::size_t light = 0;        // the selected one
+  std::vector<Method> methods;      // that the file's levels serve
+  std::vector<std::string> bodies;  // in the file, by name; empty: one without a name
+  std::string body;                 // of these, whose material the panel and the keys change; empty: all
+  float front = 0;                  // of the body, degrees
+  std::size_t light = 0;            // the selected one
   Brush brush;
   Knife knife;
   std::optional<Uncut> uncut;  // how it was shown before it was cut, until it is whole again

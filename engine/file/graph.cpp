@@ -11,6 +11,7 @@
 #include "engine/base/error.h"
 #include "engine/base/json_text.h"
 #include "engine/base/regular_file.h"
+#include "engine/file/body_names.h"
 #include "engine/file/front.h"
 #include "engine/file/section_table.h"
 #include "engine/file/validate.h"
@@ -41,6 +42,7 @@ Level read_level(const SectionTable& table, std::uint32_t index, bool coarsest) 
   level.links = vectors<glm::uvec4>(table, prefix + "links");
   level.nodes = vectors<glm::vec3>(table, prefix + "nodes");
   if (table.has(prefix + "face_kinds")) level.face_kinds = table.rows<std::uint32_t>(prefix + "face_kinds", 1);
+  if (table.has(prefix + "tet_bodies")) level.tet_bodies = table.rows<std::uint8_t>(prefix + "tet_bodies", 1);
   if (table.has(prefix + "grid_links")) {
     level.grid_links = table.rows<std::uint32_t>(prefix + "grid_links", grid_link_count);
   }
@@ -80,6 +82,7 @@ std::vector<std::string> section_names(const SectionTable& table, std::uint32_t 
       names.push_back(prefix + field);
     }
     if (table.has(prefix + "face_kinds")) names.push_back(prefix + "face_kinds");
+    if (table.has(prefix + "tet_bodies")) names.push_back(prefix + "tet_bodies");
     if (table.has(prefix + "grid_links")) names.push_back(prefix + "grid_links");
     if (table.has(prefix + "seen_rays") || table.has(prefix + "seen")) {
       names.push_back(prefix + "seen_rays");
@@ -185,6 +188,7 @@ void QuadGraph::read(std::span<const std::byte> bytes, const std::string& name) 
   metadata_ = table.text("metadata");
   check_metadata(table, metadata_, count);
   front_ = front_from(metadata_, name);
+  bodies_ = body_names(metadata_, name);
   for (std::uint32_t i = 0; i < count; ++i) levels_.push_back(read_level(table, i, i + 1 == count));
   display_ = read_display(table, count > 0);
   validate(name);
@@ -197,6 +201,7 @@ void QuadGraph::validate(const std::string& name) {
     levels_[i].surface_vertex_count = count_surface_vertices(levels_[i]);
   }
   validate_display(display_, levels_.empty() ? nullptr : &levels_[0], name);
+  validate_bodies(levels_, bodies_.size(), name);
   // Beside the rest where a thread is to be had; else in get().
   std::future<void> places = std::async([&] { validate_places(levels_, display_, name); });
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -204,6 +209,7 @@ void QuadGraph::validate(const std::string& name) {
     validate_grid(levels_[i], name, i);
   }
   validate_grid_everywhere(levels_, name);
+  validate_bodies_apart(levels_, display_, name);
   validate_seen_once(levels_, name);
   places.get();
 }

@@ -35,6 +35,7 @@ struct Level {
   std::span<const glm::uvec4> links;          // entry k across the face opposite vertex k; >= n_t: surface node
   std::span<const glm::vec3> nodes;           // mm; inner nodes, then surface nodes
   std::span<const std::uint32_t> face_kinds;  // FaceKind of each outside face; empty: all are open
+  std::span<const std::uint8_t> tet_bodies;   // the body of each tet, by QuadGraph::bodies; empty: there is one
   // Links of a polygrid, else empty: six for each vertex below the surface, in pairs of opposite ones; the last of
   // six may be the vertex itself, for none. A surface vertex is named once, by its one neighbour. Vertices are in order
   // of their layers, the fewest links from the surface.
@@ -49,6 +50,8 @@ struct Level {
   std::uint32_t surface_vertex_count = 0;
 
   bool reflecting(std::uint32_t face) const { return !face_kinds.empty() && face_kinds[face] == face_reflecting; }
+  std::uint32_t body_of_tet(std::uint32_t tet) const { return tet_bodies.empty() ? 0 : tet_bodies[tet]; }
+  std::uint32_t body_of_face(std::uint32_t face) const { return body_of_tet(face_tets[face]); }
   // Link k of vertex v below the surface.
   std::uint32_t grid_link(std::uint32_t v, std::uint32_t k) const {
     return grid_links[std::size_t{grid_link_count} * (v - surface_vertex_count) + k];
@@ -82,6 +85,8 @@ class QuadGraph {
 
   const std::vector<Level>& levels() const { return levels_; }  // finest first; empty: a surface alone
   const DisplayMesh& display() const { return display_; }
+  // Names of the bodies that Level::tet_bodies counts; empty: one body without a name.
+  const std::vector<std::string>& bodies() const { return bodies_; }
   const std::string& metadata() const { return metadata_; }  // JSON text, checked to be an object
   float front() const { return front_; }  // degrees about y from where it is shown when nobody says so
   std::size_t byte_size() const { return byte_size_; }
@@ -101,6 +106,7 @@ class QuadGraph {
   std::vector<Level> levels_;
   DisplayMesh display_;
   std::string metadata_;
+  std::vector<std::string> bodies_;
   float front_ = 0;
 };
 

@@ -169,13 +169,16 @@ const QgraphSection& SectionTable::find(const std::string& name, SectionType typ
 
 template <typename T>
 std::span<const T> SectionTable::rows(const std::string& name, std::uint64_t columns) const {
-  const SectionType type = std::is_same_v<T, float> ? SectionType::f32 : SectionType::u32;
+  const SectionType type = std::is_same_v<T, float>           ? SectionType::f32
+                           : std::is_same_v<T, std::uint32_t> ? SectionType::u32
+                                                              : SectionType::u8;
   const QgraphSection& section = find(name, type, columns);
   return {reinterpret_cast<const T*>(bytes_.data() + section.offset), section.size / sizeof(T)};
 }
 
 template std::span<const float> SectionTable::rows(const std::string&, std::uint64_t) const;
 template std::span<const std::uint32_t> SectionTable::rows(const std::string&, std::uint64_t) const;
+template std::span<const std::uint8_t> SectionTable::rows(const std::string&, std::uint64_t) const;
 
 std::string_view SectionTable::text(const std::string& name) const {
   const QgraphSection& section = find(name, SectionType::u8, 1);

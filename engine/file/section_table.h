@@ -29,8 +29,8 @@ class SectionTable {
   bool has(const std::string& name) const { return sections_.count(name) > 0; }
   const std::vector<std::string>& names() const { return names_; }  // in file order
 
-  // The section as rows of `columns` values of T (u32 or f32; columns 1: rank 1). Throws FormatError if it is missing
-  // or of another type or shape.
+  // The section as rows of `columns` values of T (u8, u32 or f32; columns 1: rank 1). Throws FormatError if it is
+  // missing or of another type or shape.
   template <typename T>
   std::span<const T> rows(const std::string& name, std::uint64_t columns) const;
 

@@ -30,6 +30,13 @@ void validate_seen_again(const Level& level, const std::string& file, std::uint3
 // At most one level has rows of what its faces see.
 void validate_seen_once(std::span<const Level> levels, const std::string& file);
 
+// Which body each tet is of: said on all levels or, of one body without a name, `bodies` 0, on none; each body has a
+// tet on every level. Indices of levels and display mesh are valid.
+void validate_bodies(std::span<const Level> levels, std::size_t bodies, const std::string& file);
+
+// No link, transfer or triangle of the display mesh joins two bodies, of levels that keep all other rules.
+void validate_bodies_apart(std::span<const Level> levels, const DisplayMesh& display, const std::string& file);
+
 // The box around them is neither too small nor too large for single precision.
 void validate_size(std::span<const glm::vec3> vertices, const std::string& file, const std::string& section);
 

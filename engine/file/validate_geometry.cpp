@@ -4,6 +4,7 @@
 #include <glm/common.hpp>
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include "engine/base/text.h"
 #include "engine/file/geometry.h"
@@ -129,17 +130,28 @@ void check_gaps(const DisplayMesh& display, const Level& finest, double size, co
   }
 }
 
-void check_nearest(const DisplayMesh& display, const Level& finest, double size, const std::string& file) {
+// Of the display vertices of one body, against the faces of that body.
+void check_nearest(const DisplayMesh& display, const Level& finest, std::uint32_t body, double size,
+                   const std::string& file) {
+  std::vector<glm::vec3> nodes;
+  for (std::uint32_t f = 0; f < finest.face_count(); ++f) {
+    if (finest.body_of_face(f) == body) nodes.push_back(finest.nodes[finest.tets.size() + f]);
+  }
   const std::size_t count = display.vertices.size(), step = step_for(count, most_held);
   Nearest nearest;
-  for (std::size_t i = 0; i < count; i += step) nearest.add(display.vertices[i]);
-  nearest.hold_against(finest.nodes.subspan(finest.tets.size()));
+  std::vector<std::size_t> held;
   for (std::size_t i = 0; i < count; i += step) {
-    const double gap = gap_of(display, finest, i), least = nearest.distance(i / step);
+    if (finest.body_of_face(display.face[i]) != body) continue;
+    nearest.add(display.vertices[i]);
+    held.push_back(i);
+  }
+  nearest.hold_against(nodes);
+  for (std::size_t k = 0; k < held.size(); ++k) {
+    const double gap = gap_of(display, finest, held[k]), least = nearest.distance(k);
     if (gap <= least + gap_tolerance * size) continue;
     fail_format(
         file, "display/face",
-        "row " + std::to_string(i) + ": " + of_mm(gap) + " from the vertex, a face lies within " + of_mm(least));
+        "row " + std::to_string(held[k]) + ": " + of_mm(gap) + " from the vertex, a face lies within " + of_mm(least));
   }
 }
 
@@ -246,7 +258,9 @@ void validate_surface_nodes(const Level& level, const std::string& file, std::ui
 void validate_display_place(const DisplayMesh& display, const Level& finest, const std::string& file) {
   const double size = box_of(finest.vertices).size();
   check_gaps(display, finest, size, file);
-  check_nearest(display, finest, size, file);
+  const auto last = std::ranges::max_element(finest.tet_bodies);
+  const std::uint32_t bodies = last == finest.tet_bodies.end() ? 1 : *last + 1u;
+  for (std::uint32_t body = 0; body < bodies; ++body) check_nearest(display, finest, body, size, file);
   check_closed(display, file);
   check_agreement(display, finest, file);
 }

@@ -274,20 +274,26 @@ gpu::Material parse_material(std::string_view text) {
   return material;
 }
 
-std::optional<glm::vec3> g_of(const gpu::Material& material) {
-  if (material.pattern != gpu::PATTERN_NONE && material.second_g != material.g) return std::nullopt;
-  return material.g;
+std::optional<glm::vec3> g_of(std::span<const gpu::Material> materials) {
+  if (materials.empty()) return std::nullopt;
+  const glm::vec3 g = materials[0].g;
+  const auto differs = [&](const gpu::Material& material) {
+    return material.g != g || (material.pattern != gpu::PATTERN_NONE && material.second_g != g);
+  };
+  return std::ranges::any_of(materials, differs) ? std::nullopt : std::optional(g);
 }
 
-std::string phase_warning(const gpu::Material& material, bool measured) {
-  const bool forwards = material.g != glm::vec3(0) || material.second_g != glm::vec3(0);
-  const std::optional<glm::vec3> g = g_of(material);
-  if (!forwards || (g && measured)) return "";
+std::string phase_warning(std::span<const gpu::Material> materials, bool measured) {
+  const auto turns = [](const gpu::Material& material) {
+    return material.g != glm::vec3(0) || material.second_g != glm::vec3(0);
+  };
+  const std::optional<glm::vec3> g = g_of(materials);
+  if (std::ranges::none_of(materials, turns) || (g && measured)) return "";
   const std::string said =
       "the stated error is that of sigma_s_prime = (1 - g) sigma_s: what the angles of scattering change besides, most "
       "in bodies that are thin or absorb much (docs/accuracy.md, \"Scattering that goes forwards\"), is not in it";
   return g ? said + "; at rest, with the correction, walks measure it"
-           : said + ", and walks cannot measure it where g and second_g differ";
+           : said + ", and walks measure it only where g is the same everywhere";
 }
 
 void check_material(const gpu::Material& material) {

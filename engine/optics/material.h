@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -42,12 +43,14 @@ std::string_view pattern_name(const gpu::Material& material);
 // to 1e6, eta in [1, 3], mean_free_path > 0, g above -1 and below 1, roughness in roughness_range; all finite).
 gpu::Material parse_material(std::string_view text);
 
-// Mean cosine of the angle by which light scatters, that of all of the material. Nothing where its two sets differ.
-std::optional<glm::vec3> g_of(const gpu::Material& material);
+// Mean cosine of the angle by which light scatters, the same everywhere. Nothing where materials, or two sets of one,
+// differ in it.
+std::optional<glm::vec3> g_of(std::span<const gpu::Material> materials);
 
-// What is to be said of a material that scatters forwards or back, as the stated error knows of the reduced coefficient
-// alone; `measured`: walks that know of g do the rest. Empty where there is nothing.
-std::string phase_warning(const gpu::Material& material, bool measured);
+// What is to be said of materials of one body or several, of which one scatters forwards or back, as the stated error
+// knows of the reduced coefficient alone; `measured`: walks that know of g do the rest, where that is the same
+// everywhere. Empty where there is nothing.
+std::string phase_warning(std::span<const gpu::Material> materials, bool measured);
 
 // Throws InputError if a coefficient is out of range.
 void check_material(const gpu::Material& material);

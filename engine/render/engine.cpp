@@ -52,6 +52,7 @@ void Engine::set_material(const gpu::Material& material) {
   self.paths.set(material);
   self.material = material_text(material);
   self.certainty = {};
+  self.body_roughness.reset();
   self.eta = material.eta;
   self.stale();
 }
@@ -64,6 +65,7 @@ void Engine::set_optical(std::uint32_t level, std::span<const gpu::Optical> opti
   self.paths.clear();
   self.material = "coefficients per node, eta=" + number_text(eta);
   self.certainty = {};
+  self.body_roughness.reset();
   self.eta = eta;
   self.stale();
 }
@@ -76,6 +78,7 @@ void Engine::set_optical(const OpticalGrid& grid) {
   self.paths.set(grid);
   self.material = "coefficients on a grid, eta=" + number_text(grid.eta);
   self.certainty = {};
+  self.body_roughness.reset();
   self.eta = grid.eta;
   self.stale();
 }
@@ -220,7 +223,8 @@ SolveReport Engine::solve(const SolveOptions& options, const std::function<void(
   if (self.report->correction && !options.warm && (options.certify > 0 || self.simulation->scatters_by_angle())) {
     self.interruptible([&] { self.simulation->certify(options, *self.report, check); });
   }
-  if (!by_path) self.report->size_warning = size_warning(self.material, self.of_text, self.simulation->chord());
+  const bool of_one_text = !by_path && !self.body_roughness;
+  if (of_one_text) self.report->size_warning = size_warning(self.material, self.of_text, self.simulation->chord());
   judge(*self.report, self.lights, self.lights_inside());
   if (self.ground) self.ground->relight();
   self.options = options;

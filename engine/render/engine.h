@@ -21,6 +21,7 @@
 #include "engine/file/graph.h"
 #include "engine/optics/certainty.h"
 #include "engine/optics/optical_grid.h"
+#include "engine/render/body_material.h"
 #include "engine/render/display/camera.h"
 #include "engine/render/display/pick.h"
 #include "engine/render/display/surface_roughness.h"
@@ -108,6 +109,10 @@ class Engine {
   // Text as parse_material reads it, or a material. Throws InputError.
   void set_material(std::string_view text);
   void set_material(const gpu::Material& material);
+
+  // A material for each body of a file that names them, in its order. Throws InputError where they are not as many, or
+  // of several indices of refraction.
+  void set_materials(std::span<const BodyMaterial> materials);
 
   // Coefficients instead of a material, as Simulation::set_optical.
   void set_optical(std::uint32_t level, std::span<const gpu::Optical> optical, float eta,

@@ -4,6 +4,7 @@
 #include "engine/base/error.h"
 #include "engine/devices/open_device.h"
 #include "engine/optics/material.h"
+#include "engine/render/body_roughness.h"
 #include "engine/render/display/display_faces.h"
 #include "engine/render/display/display_motion.h"
 #include "engine/render/engine.h"
@@ -58,8 +59,9 @@ struct Engine::Implementation {
   Rasteriser rasteriser;
 
   std::string material;
-  gpu::Material of_text{};  // what `material` says, where it is the text of one
-  Certainty certainty;      // of it, at the vertices of level 0
+  gpu::Material of_text{};                      // what `material` says, where it is the text of one
+  Certainty certainty;                          // of it, at the vertices of level 0
+  std::optional<BodyRoughness> body_roughness;  // of the materials of several bodies
   std::vector<Light> lights;
   float eta = 1;                  // of the material
   bool shadows_stale = false;     // they are not those of the present lights and shape
@@ -294,14 +296,22 @@ struct Engine::Implementation {
     return field;
   }
 
+  // Each body's own, unless the picture says one for all, or places one itself.
+  const BodyRoughness* own_roughness(const RenderOptions& render) const {
+    return body_roughness && !render.roughness && !render.roughness_map ? &*body_roughness : nullptr;
+  }
+
   float roughness(const RenderOptions& render) const {
-    return render.roughness.value_or(stated_roughness(material).value_or(default_roughness));
+    if (render.roughness) return *render.roughness;
+    return body_roughness ? body_roughness->least() : stated_roughness(material).value_or(default_roughness);
   }
 
   // The body as it looks; how its radiance left, never automatic.
   Radiance draw_surface(const Camera& camera, const RenderOptions& render) {
     std::optional<PlacedRoughness> placed;
     if (render.roughness_map) placed.emplace(placed_roughness(*render.roughness_map));
+    const BodyRoughness* own = own_roughness(render);
+    if (auto by_body = own ? own->placed() : std::nullopt) placed.emplace(*by_body);
     const PlacedRoughness* there = placed ? &*placed : nullptr;
     if (report->path) {
       if (render.radiance == Radiance::gathered || render.radiance == Radiance::single) {
@@ -348,7 +358,8 @@ struct Engine::Implementation {
   void draw_picture(const View& from, const Camera& camera, const RenderOptions& render) {
     legend.reset();
     const auto& map = render.roughness_map;
-    images.set_roughness(roughness(render), map ? map->roughness : 0);
+    const BodyRoughness* own = own_roughness(render);
+    images.set_roughness(roughness(render), map ? map->roughness : own ? own->most() : 0);
     radiance = draw_surface(camera, render);
     if (render.ground) {
       if (!ground) ground.emplace(device);

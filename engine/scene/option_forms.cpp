@@ -4,11 +4,13 @@
 
 #include "engine/base/error.h"
 #include "engine/base/text.h"
+#include "engine/file/body_names.h"
 #include "engine/optics/material.h"
 #include "engine/render/light/lights.h"
 #include "engine/scene/material_map.h"
 #include "engine/scene/option_members.h"
 #include "engine/scene/usual_light.h"
+#include "engine/scene/volume.h"
 
 namespace quadgraph {
 
@@ -38,6 +40,29 @@ std::string map_help() {
          ". Then, joined by commas: scale=S (box: of the body's box; shell: mm of the body for one of the source), "
          "repeat=mirror or clamp, depth=MM of the shell, from=BODY.qgraph that the volume was found in (default: the "
          "volume's own box). Default: it lies in the body as it is";
+}
+
+std::string body_help() {
+  return "of one body of a file that names several (docs/bodies.md): what it is made of, as --material; may be "
+         "repeated. Bodies that are not named have --material";
+}
+
+OptionValue materials_of(const Scene& scene) {
+  std::vector<std::string> texts;
+  for (const auto& [body, material] : scene.materials) texts.push_back(body + "=" + material);
+  return texts;
+}
+
+void set_materials_of(Scene& scene, const OptionValue& value) {
+  for (const std::string& text : std::get<std::vector<std::string>>(value)) {
+    const std::size_t at = text.find('=');
+    const std::string body = text.substr(0, at);
+    if (at == std::string::npos || !is_body_name(body)) {
+      throw InputError("material-of: found '" + text + "', expected BODY=M, such as cup=porcelain");
+    }
+    check_material_text(text.substr(at + 1));
+    scene.materials[body] = text.substr(at + 1);
+  }
 }
 
 OptionValue map_of(const Scene& scene) {

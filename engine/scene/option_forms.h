@@ -10,6 +10,13 @@ const std::string& text_in(const OptionValue& value);
 // What --material takes, with all names.
 std::string material_help();
 
+// What --material-of takes.
+std::string body_help();
+
+// "BODY=M" for each body that has a material of its own; to set them leaves those of other bodies as they are.
+OptionValue materials_of(const Scene& scene);
+void set_materials_of(Scene& scene, const OptionValue& value);
+
 // How the volume that is the material is carried into the body.
 std::string map_help();
 

@@ -17,6 +17,10 @@ void add_scene(OptionTable& table) {
       {.name = "material", .member = "/material", .own_form = true, .metavar = "M", .help = material_help()},
       [](const Scene& scene) { return scene.material; },
       [](Scene& scene, const OptionValue& value) { scene.material = text_in(value); });
+  table.text(
+      OptionKind::texts,
+      {.name = "material-of", .member = "/materials", .own_form = true, .metavar = "BODY=M", .help = body_help()},
+      materials_of, set_materials_of);
   table.text(OptionKind::text, {.name = "map", .own_form = true, .metavar = "KIND[,NAME=VALUE]", .help = map_help()},
              map_of, set_map);
   table.text(OptionKind::texts,

@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include "engine/base/text.h"
+#include "engine/file/body_names.h"
 #include "engine/optics/material.h"
 #include "engine/scene/cut_json.h"
 #include "engine/scene/deformer_json.h"
@@ -58,6 +59,16 @@ std::string material_from(const JsonField& field) {
   }
   field.within([&] { check_material_text(text); });
   return text;
+}
+
+std::map<std::string, std::string> materials_from(const JsonField& field) {
+  std::map<std::string, std::string> materials;
+  for (const JsonField& material : field.members("an object of materials by the names of bodies")) {
+    const std::string name = material.path().substr(field.path().size() + 1);
+    if (!is_body_name(name)) material.refuse("the name of a body as a key");
+    materials[name] = material_from(material);
+  }
+  return materials;
 }
 
 OptionValue value_from(const SceneOption& option, const JsonField& field) {
@@ -217,6 +228,7 @@ Scene scene_from(const JsonField& document) {
   Scene scene;
   scene.body = document.at("body").text();
   if (const auto material = document.find("material")) scene.material = material_from(*material);
+  if (const auto materials = document.find("materials")) scene.materials = materials_from(*materials);
   if (const auto edits = document.find("edits")) {
     for (const JsonField& edit : edits->items()) scene.edits.push_back(edit_from(edit));
   }
@@ -243,10 +255,16 @@ Json to_json(const Scene& scene) {
   for (const Deformer& deformer : scene.deformation) deformation.push_back(to_json(deformer));
   for (const BodyCut& cut : scene.cuts) cuts.push_back(to_json(cut));
   for (const Light& light : scene.lights) lights.push_back(to_json(light));
-  return {{"quadgraph_scene", 1},          {"body", scene.body.string()}, {"material", scene.material},
-          {"edits", std::move(edits)},     {"lights", std::move(lights)}, {"deformation", std::move(deformation)},
-          {"cuts", std::move(cuts)},       {"camera", view_json(scene)},  {"solver", solve_json(scene)},
-          {"picture", picture_json(scene)}};
+  Json json = {{"quadgraph_scene", 1}, {"body", scene.body.string()}, {"material", scene.material}};
+  if (!scene.materials.empty()) json["materials"] = scene.materials;
+  json["edits"] = std::move(edits);
+  json["lights"] = std::move(lights);
+  json["deformation"] = std::move(deformation);
+  json["cuts"] = std::move(cuts);
+  json["camera"] = view_json(scene);
+  json["solver"] = solve_json(scene);
+  json["picture"] = picture_json(scene);
+  return json;
 }
 
 }  // namespace quadgraph

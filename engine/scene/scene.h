@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -17,9 +18,10 @@
 namespace quadgraph {
 
 struct Scene {
-  std::filesystem::path body;       // .qgraph
-  std::string material = "marble";  // as parse_material reads it, or a volume's file
-  std::vector<Edit> edits{};        // of the material, one after the other
+  std::filesystem::path body;                      // .qgraph
+  std::string material = "marble";                 // as parse_material reads it, or a volume's file
+  std::map<std::string, std::string> materials{};  // the same of bodies by their names; others have `material`
+  std::vector<Edit> edits{};                       // of the material, one after the other
   std::vector<Light> lights{};
   std::vector<Deformer> deformation{};  // one after the other
   std::vector<BodyCut> cuts{};          // away from the body as it is shown; only with shortest-path

@@ -58,15 +58,25 @@ void rename_volume(Json& material, const Function& renamed) {
   }
 }
 
-// Replaces the files that a scene names: its body, a volume and the body that it is from, images of lights, edits and
-// the surface, and shapes of deformers.
+// The material of a scene, and those of its bodies.
+std::vector<Json*> materials_of(Json& document) {
+  std::vector<Json*> materials;
+  if (document.contains("material")) materials.push_back(&document["material"]);
+  if (document.contains("materials") && document["materials"].is_object()) {
+    for (Json& material : document["materials"]) materials.push_back(&material);
+  }
+  return materials;
+}
+
+// Replaces the files that a scene names: its body, volumes and the bodies that they are from, images of lights, edits
+// and the surface, and shapes of deformers.
 template <typename Function>
 void each_file(Json& document, const Function& renamed) {
   std::vector<Json*> files = text_of(document, "body");
-  for (Json* material : text_of(document, "material")) rename_volume(*material, renamed);
-  if (document.contains("material")) {
+  for (Json* material : materials_of(document)) {
+    if (material->is_string()) rename_volume(*material, renamed);
     for (const char* name : {"volume", "from"}) {
-      for (Json* file : text_of(document["material"], name)) files.push_back(file);
+      for (Json* file : text_of(*material, name)) files.push_back(file);
     }
   }
   for (const auto& [list, name] :
@@ -95,22 +105,29 @@ SceneFile::SceneFile(Json document, std::filesystem::path path)
 SceneFile::SceneFile(const Scene& scene) : SceneFile(to_json(scene), {}) {}
 
 SceneFile SceneFile::load(const std::filesystem::path& path) {
-  try {
-    return {parsed(content(path), path), path};
-  } catch (const InputError& error) {
-    const std::string text = error.what();
-    throw InputError(text.starts_with(path.string()) ? text : path.string() + ": " + text);
-  }
+  return parse(content(path), path);
 }
 
-SceneFile SceneFile::parse(const std::string& text) {
-  return {parsed(text, "scene"), {}};
+SceneFile SceneFile::parse(const std::string& text, const std::filesystem::path& path) {
+  if (path.empty()) return {parsed(text, "scene"), {}};
+  try {
+    return {parsed(text, path), path};
+  } catch (const InputError& error) {
+    const std::string said = error.what();
+    throw InputError(said.starts_with(path.string()) ? said : path.string() + ": " + said);
+  }
 }
 
 void SceneFile::check() {
   const JsonField field(document_, "");
-  field.allow({"quadgraph_scene", "body", "material", "edits", "lights", "deformation", "cuts", "camera", "solver",
-               "picture", "frames", "frames_per_second", "tracks"});
+  if (document_.is_object() && document_.contains("bodies")) {
+    throw InputError(
+        "/bodies: a scene of meshes, which the command quadgraph bakes; for this program and the engine bake them into "
+        "one file, 'quadgraph bake SCENE.json -o NAME.qgraph', and name it as \"body\", and what they are made of as "
+        "\"materials\"");
+  }
+  field.allow({"quadgraph_scene", "body", "material", "materials", "edits", "lights", "deformation", "cuts", "camera",
+               "solver", "picture", "frames", "frames_per_second", "tracks"});
   if (const auto version = field.find("quadgraph_scene")) version->whole(format_version, format_version);
   tracks_.clear();
   front_ = 0;

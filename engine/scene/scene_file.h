@@ -23,8 +23,9 @@ class SceneFile {
   // the path into it, what was found and what is allowed.
   static SceneFile load(const std::filesystem::path& path);
 
-  // Parses JSON text without a file: relative names are looked for in the working directory.
-  static SceneFile parse(const std::string& text);
+  // Parses JSON text: relative names are looked for beside `path`, which is not read, or where that is empty in the
+  // working directory. Throws as `load`.
+  static SceneFile parse(const std::string& text, const std::filesystem::path& path = {});
 
   // One that does not change.
   explicit SceneFile(const Scene& scene);

@@ -16,9 +16,10 @@ void Stage::show(const Scene& scene) {
     scene_ = {};
     scene_.body = scene.body;
   }
-  if (fresh || scene.material != scene_.material) {
-    map_report_ = set_material(*engine_, scene.material);
+  if (fresh || scene.material != scene_.material || scene.materials != scene_.materials) {
+    map_report_ = set_materials(*engine_, scene.material, scene.materials);
     scene_.material = scene.material;
+    scene_.materials = scene.materials;
   }
   if (scene.edits != scene_.edits) {
     engine_->set_edits(scene.edits);

@@ -4,6 +4,7 @@
 #include <array>
 #include <filesystem>
 #include <glm/vec3.hpp>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -53,5 +54,10 @@ void set_material(Engine& engine, const Volume& volume);
 // (engine/scene/material_map.h); returns what is to be said of that, nothing where none is carried. Throws InputError
 // as parse_material, read_volume or mapped.
 std::string set_material(Engine& engine, std::string_view text);
+
+// The same of a file of several bodies: `materials` by their names, and `material` for the others; where none is named
+// it is that of the whole file. Throws InputError also for a body that the file does not have, and for a map.
+std::string set_materials(Engine& engine, std::string_view material,
+                          const std::map<std::string, std::string>& materials);
 
 }  // namespace quadgraph

@@ -37,11 +37,9 @@ class Coefficients {
 
   float eta() const { return eta_; }
 
-  // Mean cosine of the angle by which light scatters; 0 where it is not known, or not the same everywhere.
-  glm::vec3 g() const { return material_ ? g_of(*material_).value_or(glm::vec3(0)) : glm::vec3(0); }
-  std::string phase_warning(bool measured) const {
-    return material_ ? quadgraph::phase_warning(*material_, measured) : "";
-  }
+  // What the coefficients are of, as far as they are of materials, for what it says of g; until the next are set.
+  void made_of(std::span<const gpu::Material> materials) { made_of_.assign(materials.begin(), materials.end()); }
+  const std::vector<gpu::Material>& made_of() const { return made_of_; }
 
   // Whether the coefficients are the same everywhere.
   bool even() const { return material_ && material_->pattern == gpu::PATTERN_NONE && edits_.edits.empty(); }
@@ -90,6 +88,7 @@ class Coefficients {
   device::Device& device_;
   std::span<const Level> rest_;
   std::optional<gpu::Material> material_;
+  std::vector<gpu::Material> made_of_;
   std::vector<device::Buffer> given_;  // arrays, per level, where there is no material
   EditArrays edits_{{}};
   EditBuffers edit_buffers_;

@@ -44,6 +44,10 @@ void Simulation::set_material(const gpu::Material& material) {
   implementation_->disassemble();
 }
 
+void Simulation::set_angles(std::span<const gpu::Material> materials) {
+  implementation_->coefficients.made_of(materials);
+}
+
 void Simulation::set_optical(std::uint32_t level, std::span<const gpu::Optical> optical, float eta,
                              std::span<const gpu::Optical> elsewhere) {
   if (level >= level_count()) {
@@ -115,7 +119,7 @@ SolveReport Simulation::solve(const SolveOptions& options, const std::function<v
                               const std::function<void(bool)>& light) {
   SolveReport report = implementation_->solve(options, check, light);
   const bool measured = report.correction && !options.warm;
-  report.phase_warning = implementation_->coefficients.phase_warning(measured);
+  report.phase_warning = quadgraph::phase_warning(implementation_->coefficients.made_of(), measured);
   if (!options.warm && report.correction) state_medium_error(options, report);
   return report;
 }
@@ -185,7 +189,7 @@ void Simulation::state_medium_error(const SolveOptions& options, SolveReport& re
 }
 
 bool Simulation::scatters_by_angle() const {
-  return implementation_->coefficients.g() != glm::vec3(0);
+  return g_of(implementation_->coefficients.made_of()).value_or(glm::vec3(0)) != glm::vec3(0);
 }
 
 void Simulation::certify(const SolveOptions& options, SolveReport& report, const std::function<void()>& check) {
@@ -198,7 +202,7 @@ void Simulation::certify(const SolveOptions& options, SolveReport& report, const
                                  .surface = surface_field(),
                                  .scale = device::download<gpu::Scale>(self.device, self.work.scale)[0],
                                  .entered = report.energy.entered,
-                                 .g = self.coefficients.g()},
+                                 .g = g_of(self.coefficients.made_of()).value_or(glm::vec3(0))},
                                 options.certify, options.sweep_seed, check);
   if (scatters_by_angle()) add_phase_error(report);
   state_disagreement(report);

@@ -73,6 +73,9 @@ class Simulation {
   void set_optical(std::uint32_t level, std::span<const gpu::Optical> optical, float eta,
                    std::span<const gpu::Optical> elsewhere = {});
 
+  // Materials whose g says by which angles light scatters in the coefficients that were set; they say nothing else.
+  void set_angles(std::span<const gpu::Material> materials);
+
   // Edits of the material or the coefficients, one after the other, in place of those before; kept for what is set
   // later. Throws InputError naming the edit and as check_edit.
   void set_edits(std::span<const Edit> edits);

@@ -3,6 +3,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <algorithm>
+#include <map>
 
 #include "engine/base/error.h"
 #include "engine/base/json_text.h"
@@ -192,6 +193,14 @@ void bind_scene_setters(py::class_<Engine>& bound) {
           py::arg("text"),
           "As --material reads it (docs/scene.md); returns what is to be said of the map that carried a volume into "
           "the body, '' without one. Raises InputError, FormatError.")
+      .def(
+          "set_materials",
+          [](Engine& engine, const std::map<std::string, std::string>& materials, const std::string& others) {
+            set_materials(engine, others, materials);
+          },
+          py::arg("materials"), py::arg("others"),
+          "Texts as set_material takes them by the names of bodies, and that of those that are not named. Raises "
+          "InputError, also for a body that the file does not have.")
       .def("set_material", py::overload_cast<const gpu::Material&>(&Engine::set_material), py::arg("material"))
       .def("set_lights", &set_lights, py::arg("lights"),
            "Texts as --light takes them (engine/render/light/lights.h); replaces all lights.")

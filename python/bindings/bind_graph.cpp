@@ -50,6 +50,9 @@ void bind_level(py::module_& module) {
           "What faces see: beginnings of rows, then faces met; empty if this level has none.")
       .def_property_readonly(
           "seen_rays", [](const LevelHandle& h) { return h.level->seen_rays; }, "Rays from each face behind `seen`.")
+      .def_property_readonly(
+          "tet_bodies", [](const LevelHandle& h) { return flat(h.level->tet_bodies, h.graph); },
+          "(n_t,) which of the bodies each tet is of; empty if there is one.")
       .def_property_readonly("links", [](const LevelHandle& h) { return rows(h.level->links, h.graph); })
       .def_property_readonly("nodes", [](const LevelHandle& h) { return rows(h.level->nodes, h.graph); })
       .def_property_readonly(
@@ -126,6 +129,7 @@ void bind_graph(py::module_& module) {
             return d;
           },
           "The display mesh: vertices, normals, triangles, face, barycentric.")
+      .def_property_readonly("bodies", &QuadGraph::bodies, "Names of the bodies; empty: one without a name.")
       .def_property_readonly("metadata", &QuadGraph::metadata, "JSON text.")
       .def_property_readonly("front", &QuadGraph::front,
                              "Azimuth in degrees about y from where the body is shown when nobody says so.")

@@ -88,8 +88,9 @@ void bind_values(py::module_& module) {
   module.def(
       "check_scene", [](const std::string& json) { members(json); }, py::arg("json"),
       "Raises InputError naming the place, unless scene files may have these members.");
-  module.def("scene_file", &SceneFile::parse, py::arg("json"),
-             "A SceneFile of no file; relative names are looked for in the working directory. Raises InputError.");
+  module.def("scene_file", &SceneFile::parse, py::arg("json"), py::arg("path") = std::filesystem::path(),
+             "A SceneFile of a text; relative names are looked for beside `path`, which is not read, without one in "
+             "the working directory. Raises InputError.");
   bind_pictures(module);
 }
 

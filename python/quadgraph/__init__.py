@@ -55,10 +55,12 @@ if TYPE_CHECKING:
     from quadgraph.api.stage import Stage
     from quadgraph.api.tensors import OutgoingTensors, outgoing_tensors
     from quadgraph.api.volume_map import MapReport, VolumeMap
+    from quadgraph.baking.bodies import BodyMesh, bake_bodies
     from quadgraph.baking.colours.colour_options import ColourOptions
     from quadgraph.baking.colours.colour_report import ColourReport
     from quadgraph.baking.colours.colour_volume import mesh_colours
     from quadgraph.baking.pipeline import BakeOptions, BakeReport, bake
+    from quadgraph.baking.placing import BodyPlacement
     from quadgraph.base.errors import (
         DeviceError,
         FormatError,
@@ -73,6 +75,8 @@ __all__ = [
     "BakeOptions",
     "BakeReport",
     "Bend",
+    "BodyMesh",
+    "BodyPlacement",
     "BrowserView",
     "Cage",
     "Camera",
@@ -132,6 +136,7 @@ __all__ = [
     "VolumeMaterial",
     "__version__",
     "bake",
+    "bake_bodies",
     "default_lights",
     "material_names",
     "mesh_colours",
@@ -156,6 +161,8 @@ _PLACES = {
     "quadgraph.api.stage": "Stage",
     "quadgraph.api.tensors": "OutgoingTensors outgoing_tensors",
     "quadgraph.api.volume_map": "MapReport VolumeMap",
+    "quadgraph.baking.bodies": "BodyMesh bake_bodies",
+    "quadgraph.baking.placing": "BodyPlacement",
     "quadgraph.baking.colours.colour_options": "ColourOptions",
     "quadgraph.baking.colours.colour_report": "ColourReport",
     "quadgraph.baking.colours.colour_volume": "mesh_colours",

@@ -47,6 +47,7 @@ class Engine:
         self._open: core.Engine | None = core.Engine(Path(path), device, validation)
         self._name = Path(path).name
         self._material: Material | VolumeMaterial | str | None = None
+        self._materials: dict[str, Material | str] = {}
         self._solution: Solution | None = None
         self.lights = core.default_lights("", "y", self._open.graph.front)
 
@@ -55,6 +56,7 @@ class Engine:
         """Return one around the engine of a stage, whose scene sets material and lights; `name`: of the body's file."""
         self = cls.__new__(cls)
         self._open, self._name, self._material, self._lights, self._solution = engine, name, None, (), None
+        self._materials = {}
         return self
 
     def __repr__(self) -> str:
@@ -64,7 +66,9 @@ class Engine:
         levels, (low, high) = self._open.graph.levels, self.box
         parts = [f"{' x '.join(f'{each:.4g}' for each in high - low)} mm"]
         parts += [f"{len(levels[0].tets):,} tets, {len(levels)} level{'s' * (len(levels) > 1)}"] if levels else []
-        if (material := self._material) is not None:
+        if self._materials:
+            parts.append(f"materials of {', '.join(self._materials)}")
+        elif (material := self._material) is not None:
             parts.append(f"material {material}" if isinstance(material, str) else f"a {type(material).__name__}")
         parts += [f"{len(self._lights)} light{'s' * (len(self._lights) != 1)}"] if self._lights else []
         parts += [f"solved by {self._solution.method}"] if self._solution else []
@@ -100,8 +104,33 @@ class Engine:
         if isinstance(material, VolumeMaterial):
             material.set_on(self._engine)
         else:
-            self._engine.set_material(material.text if isinstance(material, Material) else material)
-        self._material = material
+            self._engine.set_material(_material_text(material))
+        self._material, self._materials = material, {}
+
+    @property
+    def bodies(self) -> tuple[str, ...]:
+        """Names of the bodies in the file; none of a file of one body."""
+        return tuple(self._engine.graph.bodies)
+
+    @property
+    def materials(self) -> dict[str, Material | str]:
+        """What was set for bodies by their names, each a `Material` or a text as --material takes it.
+
+        To set them, a mapping: bodies that it does not name have `material`, which is wanted then. To set `material`
+        sets all bodies. Raises InputError, also for a body that the file does not have.
+        """
+        return dict(self._materials)
+
+    @materials.setter
+    def materials(self, materials: Mapping[str, Material | str]) -> None:
+        others, missing = self._material, [name for name in self.bodies if name not in materials]
+        if missing and not isinstance(others, Material | str):
+            raise InputError(f"materials: none for {', '.join(missing)}; name them too, or set a material before")
+        texts = {name: _material_text(material) for name, material in materials.items()}
+        # Without others, what stands for them is of no use to anyone.
+        rest = _material_text(others) if isinstance(others, Material | str) else next(iter(texts.values()), "")
+        self._engine.set_materials(texts, rest)
+        self._materials = dict(materials)
 
     def set_coefficients(self, function: Coefficients, eta: float = DEFAULT_ETA) -> None:
         """Take coefficients from a function in place of a material (not with shortest-path, which wants a grid).
@@ -119,7 +148,7 @@ class Engine:
         elsewhere = coefficients_at(function, core.points_in_tets(graph, 0)) if found else None
         for number, coefficients in enumerate(found):
             self._engine.set_optical(number, *coefficients, float(eta), elsewhere if number == 0 else None)
-        self._material = None
+        self._material, self._materials = None, {}
 
     @property
     def lights(self) -> tuple[Light, ...]:
@@ -310,6 +339,10 @@ def _as_points(points: npt.ArrayLike) -> Floats:
     if places.ndim < 1 or places.shape[-1] != 3:
         raise InputError(f"points: shape {places.shape} found, (n, 3) or (..., 3) is wanted (mm)")
     return places
+
+
+def _material_text(material: Material | str) -> str:
+    return material.text if isinstance(material, Material) else material
 
 
 @cache

@@ -23,7 +23,8 @@ _STILL = Twist(0).to_dict()
 class Scene:
     """All that is shown. body: a baked .qgraph; what is None or left out is as in a scene file.
 
-    material: a `Material` or a text as --material takes it; lights: None for the studio, and the ground with it, [] for
+    material: a `Material` or a text as --material takes it; materials: of bodies by their names, where the file has
+    several; lights: None for the studio, and the ground with it, [] for
     darkness; edits and cuts: objects as scene files have them. Raises InputError naming the member and what is allowed.
     """
 
@@ -36,6 +37,7 @@ class Scene:
     camera: Camera = field(default_factory=lambda: Camera())
     solver: SolveOptions = field(default_factory=lambda: SolveOptions())
     picture: PictureOptions = field(default_factory=lambda: PictureOptions())
+    materials: Mapping[str, Material | str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Check. Raises InputError."""
@@ -58,7 +60,9 @@ class Scene:
         """The content of a scene file, with steps that move nothing in place of those with shapes in memory."""
         document: dict[str, Any] = {"body": str(self.body)}
         if self.material is not None:
-            document["material"] = self.material.text if isinstance(self.material, Material) else self.material
+            document["material"] = _text(self.material)
+        if self.materials:
+            document["materials"] = {name: _text(material) for name, material in self.materials.items()}
         if self.lights is not None:
             document["lights"] = [as_light(light).to_dict() for light in self.lights]
         document["deformation"] = [_STILL if in_memory(step) else as_dict(step) for step in self.deformation]
@@ -80,6 +84,10 @@ class Scene:
         """This value as the compiled engine holds it. Raises FormatError, InputError."""
         scene = core.scene_file(json.dumps(self._nameable())).at(0)
         return scene.with_deformation(list(map(as_dict, self.deformation))) if self._in_memory else scene
+
+
+def _text(material: Material | str) -> str:
+    return material.text if isinstance(material, Material) else material
 
 
 class SceneFile:

@@ -7,13 +7,14 @@ import fcntl
 import hashlib
 import os
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 
-from quadgraph.baking.pipeline import BakeOptions, bake
+from quadgraph.baking.bodies import BodyMesh, bake_bodies
+from quadgraph.baking.pipeline import BakeOptions, BakeReport, bake
 from quadgraph.base import regular_file
 from quadgraph.base.cache_folder import cache_folder
 from quadgraph.base.progress import ProgressCallback
@@ -46,15 +47,30 @@ def body(mesh: Path, options: BakeOptions, tell: ProgressCallback) -> Iterator[P
     It stays in the cache folder, or where that cannot be written is there as long as the block runs. Several processes
     may ask at once: one bakes, the others wait for it. Raises what `pipeline.bake` raises.
     """
-    place = _place(mesh, options)
+    with _made(_place(mesh, options), mesh, lambda path: bake(mesh, path, options, tell), tell) as path:
+        yield path
+
+
+@contextmanager
+def bodies_of(scene: Path, placed: Sequence[BodyMesh], tell: ProgressCallback) -> Iterator[Path]:
+    """Do the same with the bodies of a scene file, which are baked into one file."""
+    options = BakeOptions()
+    place = folder() / _key([each.mesh for each in placed], [replace(each, mesh=Path()) for each in placed])[:24]
+    with _made(place, scene, lambda path: bake_bodies(placed, path, options, tell), tell) as path:
+        yield path
+
+
+@contextmanager
+def _made(place: Path, source: Path, make: Callable[[Path], BakeReport], tell: ProgressCallback) -> Iterator[Path]:
+    """Give what is kept in a folder, or is made and kept there."""
     try:
-        with _turn(place, mesh.name, tell):
-            path = _kept(mesh, place / f"{mesh.stem}.qgraph", options, tell)
+        with _turn(place, source.name, tell):
+            path = _kept(source, place / f"{source.stem}.qgraph", make, tell)
     except OSError as error:
-        tell(f"{error.filename or folder()}: {error.strerror}; the bake of {mesh.name} is not kept")
+        tell(f"{error.filename or folder()}: {error.strerror}; the bake of {source.name} is not kept")
         with tempfile.TemporaryDirectory(prefix="quadgraph-") as temporary:
-            path = Path(temporary) / f"{mesh.stem}.qgraph"
-            bake(mesh, path, options, tell)
+            path = Path(temporary) / f"{source.stem}.qgraph"
+            make(path)
             yield path
         return
     yield path
@@ -87,17 +103,17 @@ def clear() -> list[KeptBody]:
 
 
 def _place(mesh: Path, options: BakeOptions) -> Path:
-    return folder() / _key(mesh, options)[:24]
+    return folder() / _key([mesh], options)[:24]
 
 
-def _kept(mesh: Path, path: Path, options: BakeOptions, tell: ProgressCallback) -> Path:
+def _kept(source: Path, path: Path, make: Callable[[Path], BakeReport], tell: ProgressCallback) -> Path:
     if path.exists():
         os.utime(path)
         return path
-    report = bake(mesh, path, options, tell)
+    report = make(path)
     for note in report.notes:
         tell(note)
-    tell(f"baked {mesh.name} in {report.seconds['total']:.0f} s, kept for the next time (quadgraph cache)")
+    tell(f"baked {source.name} in {report.seconds['total']:.0f} s, kept for the next time (quadgraph cache)")
     _trim(path)
     return path
 
@@ -161,10 +177,11 @@ def _lock(place: Path, how: int) -> int:
     raise OSError(errno.EBUSY, "cannot be made, or is removed again and again", str(place))
 
 
-def _key(mesh: Path, options: BakeOptions) -> str:
-    """Of what a bake is made of: the mesh's files, options, and the code that bakes."""
-    digest = hashlib.sha256(f"{__version__} {_code()} {mesh.suffix.lower()} {options!r}".encode())
-    for path in mesh_files(mesh):
+def _key(meshes: Sequence[Path], options: object) -> str:
+    """Of what a bake is made of: the meshes' files, options, and the code that bakes."""
+    kinds = " ".join(mesh.suffix.lower() for mesh in meshes)
+    digest = hashlib.sha256(f"{__version__} {_code()} {kinds} {options!r}".encode())
+    for path in (file for mesh in meshes for file in mesh_files(mesh)):
         with suppress(OSError):  # the reader says what is wrong with it
             digest.update(hashlib.sha256(regular_file.read_bytes(path)).digest())
     return digest.hexdigest()

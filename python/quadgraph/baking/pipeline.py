@@ -15,6 +15,8 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from quadgraph.baking import inside
 from quadgraph.baking.inside import LevelSizes
 from quadgraph.base import child_process, outputs
@@ -38,20 +40,8 @@ ORDERS = {"blocks": ordering.in_blocks, "random": ordering.at_random}
 MOST_STEPS = 10000  # that spread the inner nodes
 WORKERS = 2  # levels filled with tets at the same time
 _PACKAGES = ("numpy", "scipy", "pymeshlab", "trimesh")
-_OPTIONS = (
-    "up",
-    "wrap",
-    "levels",
-    "surface_vertices",
-    "refine",
-    "interior",
-    "for_materials",
-    "relax_nodes",
-    "order",
-    "visibility_rays",
-    "cubes",
-    "cells",
-)
+_OPTIONS = ("up", "wrap", "levels", "surface_vertices", "refine", "interior", "for_materials", "relax_nodes", "order",
+            "visibility_rays", "cubes", "cells")  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -184,12 +174,13 @@ def naming(mesh: str | Path) -> Iterator[None]:
         raise ToolError(f"{mesh}: {error}") from error
 
 
-def prepare(mesh: Path, options: BakeOptions, report: BakeReport, tell: ProgressCallback) -> Prepared:
-    """Read, wrap where that is asked for, and repair. Raises InputError, and ToolError where the wrap fails."""
+def prepare(
+    mesh: Path, options: BakeOptions, report: BakeReport, tell: ProgressCallback, part: str | None = None
+) -> Prepared:
+    """Read a mesh or a part of it, wrap it if that is asked for, repair. Raises InputError; of the wrap ToolError."""
     with report.timed("read"):
-        source = mesh_io.read_surface(
-            mesh, unit=options.unit, height_mm=options.height_mm, longest_mm=options.longest_mm, up=options.up
-        )
+        size = {name: getattr(options, name) for name in ("unit", "height_mm", "longest_mm", "up")}
+        source = mesh_io.read_surface(mesh, part=part, **size)
     if source.size_note:
         report.notes.append(source.size_note)
     tell(f"read {source.name}: {source.vertices:,} vertices, {source.triangles:,} triangles")
@@ -218,10 +209,22 @@ def write(
         report.exchange = exchange.summary(seen, graphs[seen.level].boundary)
     with report.timed("transfers"):
         content = sections.whole_file(graphs, prepared.surface, seen)
-    metadata = _metadata(prepared, levels, options) | ({} if budget is None else {"budget": budget})
+    finish(prepared, levels, content, options, report, {} if budget is None else {"budget": budget})
+
+
+def finish(
+    prepared: Prepared,
+    levels: list[Level],
+    content: dict[str, np.ndarray],
+    options: BakeOptions,
+    report: BakeReport,
+    more: dict[str, Any],
+) -> None:
+    """Write sections with their metadata, of which `more` are added, and complete the report."""
+    metadata = _metadata(prepared, levels, options) | more
     if levels[0].inside is not None:
         report.interior = inside.metadata(
-            levels[0].inside[0], options.for_materials, [_edge(level) for level in levels]
+            levels[0].inside[0], options.for_materials, [level.inside and level.inside[1] for level in levels]
         )
         metadata["interior"] = report.interior
     if report.polygrid is not None:
@@ -229,10 +232,6 @@ def write(
     with report.timed("write"):
         report.byte_size = qgraph_file.write(Path(report.output), metadata, content)
     _complete(report, metadata, levels)
-
-
-def _edge(level: Level) -> float | None:
-    return None if level.inside is None else level.inside[1]
 
 
 def check_options(output: Path, options: BakeOptions) -> None:

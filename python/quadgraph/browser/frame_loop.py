@@ -31,7 +31,8 @@ from quadgraph.browser.shown_scene import GESTURES, ShownScene
 _SETTLED_S = 0.25  # after the last change, before the scene is solved at rest
 _MOST_WAITING = 256  # messages
 _QUALITY = {False: 80, True: 93}  # of JPEG, by whether the frame is the one at rest
-_SOLVED = ("material", "lights", "edits", "deformation", "cuts", "solver")  # members that a solve depends on
+# Members that a solve depends on.
+_SOLVED = ("material", "materials", "lights", "edits", "deformation", "cuts", "solver")
 
 
 _Made = TypeVar("_Made")

@@ -89,6 +89,8 @@ class ShownScene:
         self._check(pointer, value)
         before = self.document
         self._file.set(pointer, value)
+        if pointer.split("/")[1] == "material" and "materials" in before:
+            self._file.set("/materials", {})  # the page's is that of all bodies
         self._scene = None
         if pointer.startswith(("/camera", *_SIDES)):
             return
@@ -149,6 +151,7 @@ class ShownScene:
         wanted = {**document, "picture": picture}
         for member in ("material", "lights", "edits", "deformation", "solver", *(("camera",) if camera else ())):
             self._file.set(f"/{member}", wanted[member])
+        self._file.set("/materials", wanted.get("materials", {}))
         self._file.set("/picture", picture)
         self._scene = None
 

@@ -1,4 +1,4 @@
-"""`quadgraph bake`: a mesh file into a .qgraph file, or several."""
+"""`quadgraph bake`: a mesh file into a .qgraph file, or several; or the bodies of a scene into one."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from quadgraph.base.arguments import add_strict_argument, positive_float, positi
 from quadgraph.base.child_process import MOST_MEMORY_BYTES, MOST_TIME_S
 from quadgraph.base.errors import InputError
 from quadgraph.base.units import UPS
-from quadgraph.commands import bake_many, own_mesh
+from quadgraph.commands import bake_bodies, bake_many, own_mesh
 from quadgraph.work.schedulers import add_scheduler_argument, check_several
 
 if TYPE_CHECKING:
@@ -31,7 +31,19 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         metavar="MESH",
         nargs="+",
         type=Path,
-        help="OBJ, PLY, STL, OFF, glTF or GLB, or a folder of them; several allowed",
+        help="OBJ, PLY, STL, OFF, glTF or GLB, or a folder of them, several allowed; or a scene .json of meshes, whose "
+        "bodies go into one file (docs/bodies.md)",
+    )
+    parser.add_argument(
+        "--join",
+        action="store_true",
+        help="several meshes as the bodies of one file, named as their files are, where they lie in coordinates that "
+        "they share; the size is that of all together",
+    )
+    parser.add_argument(
+        "--parts",
+        action="store_true",
+        help="the named parts of a mesh file, objects of OBJ or nodes of glTF, as the bodies of one file",
     )
     parser.add_argument(
         "-o",
@@ -39,7 +51,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         metavar="FILE",
         type=Path,
         help="the .qgraph to write (default: the mesh's name in the present folder, where there is none of it yet); of "
-        "several meshes the folder for them",
+        "several meshes the folder for them, but with --join the file",
     )
     add_scheduler_argument(parser, "the bakes of several meshes")
     own_mesh.add_size_arguments(parser)
@@ -188,6 +200,10 @@ def interior(text: str) -> str | float:
 
 def run(args: argparse.Namespace) -> int:
     """Bake, telling the progress on standard error; 3 with --strict if --error is not kept, else 0."""
+    if bake_bodies.is_asked(args):
+        report = bake_bodies.run(args, _options(args))
+        print(json.dumps(report.as_dict(), indent=1)) if args.json else _print_report(report)
+        return 0
     several = bake_many.is_several(args.mesh)
     check_several(args, several, "several meshes are wanted, or a folder of them")
     if several:

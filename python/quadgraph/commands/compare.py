@@ -17,7 +17,7 @@ from rich.console import Console
 from quadgraph.base import image_file, outputs
 from quadgraph.base.arguments import positive_float
 from quadgraph.base.errors import InputError
-from quadgraph.commands import contact_sheet, difference, picture_output, render_scene, scene_options, scene_overrides
+from quadgraph.commands import contact_sheet, difference, picture_output, scene_file, scene_options, scene_overrides
 from quadgraph.core import load_core
 
 _LINEAR, _DISPLAYED = (".exr", ".hdr"), (".png",)
@@ -94,11 +94,11 @@ def read(path: Path, args: argparse.Namespace) -> Side:
     suffix = path.suffix.lower()
     if suffix in (*_LINEAR, *_DISPLAYED):
         return Side(path.name, core.read_image(path), suffix in _LINEAR, [])
-    if render_scene.is_scene(path):
-        file = core.SceneFile(path)
-        scene_overrides.apply(file, path, args)
+    if scene_file.is_scene(path):
         stage = core.Stage(device=args.device, validation=args.validation)
-        stage.show(file.at(0))
+        with scene_file.opened(path) as (file, document):
+            scene_overrides.apply(file, document, args)
+            stage.show(file.at(0))
         report, picture = stage.solve(), stage.render()
         scene_options.check_validation(stage.engine)
         return Side(path.name, radiance(picture), True, [report])

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from quadgraph.baking.budget import record
@@ -105,6 +106,8 @@ def _print_facts(name: str, facts: dict[str, Any]) -> None:
     console.print(exchange_line(facts["exchange"]), soft_wrap=True)
     for sentence in record.sentences(metadata["budget"], name) if "budget" in metadata else []:
         console.print(sentence, markup=False, soft_wrap=True)
+    if metadata.get("bodies"):
+        console.print(_body_table(metadata["bodies"]))
     if facts["levels"]:
         console.print(level_table(metadata["levels"]))
         console.print(_quality_table(facts["levels"]))
@@ -116,6 +119,17 @@ def _print_facts(name: str, facts: dict[str, Any]) -> None:
         console.print(f"device memory: unknown, {memory['unknown']}", markup=False, soft_wrap=True)
     else:
         console.print(device_memory.table(memory["entries"]))
+
+
+def _body_table(bodies: list[dict[str, Any]]) -> Table:
+    table = Table("body", "mesh", "size, mm", "position, mm", "tets", "volume, mm3")
+    for body in bodies:
+        low, high = body["box_mm"]
+        size = " x ".join(f"{b - a:.4g}" for a, b in zip(low, high, strict=True))
+        place = ", ".join(f"{x:.4g}" for x in body["position"])
+        names = (printable(str(text)) for text in (body["name"], body["source"]["name"]))
+        table.add_row(*map(escape, names), size, place, f"{body['tets']:,}", f"{body['volume_mm3']:,.1f}")
+    return table
 
 
 def _quality_table(levels: list[dict[str, Any]]) -> Table:

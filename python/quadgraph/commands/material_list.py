@@ -63,7 +63,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "mesh of --body, is baked in all of them",
     )
     parser.add_argument("--json", action="store_true", help="print the materials as JSON on standard output")
-    scene_options.add_run_arguments(parser, scene_options.RENDER_GROUPS, without=("material", "map"))
+    scene_options.add_run_arguments(parser, scene_options.RENDER_GROUPS, without=("material", "material-of", "map"))
     parser.set_defaults(size=f"{_SIDE}x{_SIDE}")
 
 

@@ -17,6 +17,7 @@ from quadgraph.base.units import UNITS_MM
 from quadgraph.mesh import mesh_names
 
 _MEMBERS = {"unit": "unit", "height": "height_mm", "longest": "longest_mm", "wrap": "wrap"}  # of BakeOptions
+NAMES = tuple(_MEMBERS)  # of the options of meshes
 
 
 def add_size_arguments(parser: argparse.ArgumentParser | argparse._ArgumentGroup) -> None:

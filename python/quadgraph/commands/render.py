@@ -9,7 +9,7 @@ from pathlib import Path
 from rich.console import Console
 
 from quadgraph.base import atomic_file, outputs
-from quadgraph.commands import converging, picture_output, render_scene, scene_options
+from quadgraph.commands import converging, picture_output, render_scene, scene_file, scene_options
 from quadgraph.commands import solve_report as text
 
 
@@ -31,7 +31,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Render and write; 3 as `scene_options.exit_status` says."""
-    if render_scene.is_scene(args.file):
+    if scene_file.is_scene(args.file):
         return render_scene.run(args)
     render_scene.refuse(args)
     for path in args.output:

@@ -7,18 +7,29 @@ import json
 import time
 from collections.abc import Iterable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rich.console import Console
 
 from quadgraph.base import atomic_file, image_file, json_text, outputs
 from quadgraph.base.arguments import positive_int
 from quadgraph.base.errors import InputError
-from quadgraph.commands import converging, frame_output, picture_output, scene_options, scene_overrides
+from quadgraph.commands import (
+    converging,
+    frame_output,
+    picture_output,
+    scene_file,
+    scene_options,
+    scene_overrides,
+)
 from quadgraph.commands import solve_report as text
 from quadgraph.commands.progress_bar import progress_bar
 from quadgraph.core import load_core
 from quadgraph.file import film
 from quadgraph.work.schedulers import add_scheduler_argument, check_several
+
+if TYPE_CHECKING:
+    from quadgraph.core import SceneFile
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -44,11 +55,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_scheduler_argument(group, "frames")
 
 
-def is_scene(path: Path) -> bool:
-    """Whether a file is taken for a scene, by its name."""
-    return path.suffix.lower() == ".json"
-
-
 def refuse(args: argparse.Namespace) -> None:
     """Raise InputError if an option is given that only a scene file takes."""
     typed = "scheduler" in args.given
@@ -64,9 +70,12 @@ def refuse(args: argparse.Namespace) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Render and write; 3 as `scene_options.exit_status` says of all frames."""
-    core = load_core()
-    file = core.SceneFile(args.file)
-    scene_overrides.apply(file, args.file, args)
+    with scene_file.opened(args.file) as (file, document):
+        scene_overrides.apply(file, document, args)
+        return _run(args, file)
+
+
+def _run(args: argparse.Namespace, file: SceneFile) -> int:
     for change in args.set:
         pointer, equals, value = change.partition("=")
         if not equals:

@@ -139,15 +139,22 @@ def shown_engine(file: Path, args: argparse.Namespace) -> Engine:
     DeviceError.
     """
     own = _own(file, args) if own_material.is_own(args.material) else None
+    named = by_body(getattr(args, "material_of", None) or [])
     with _loaded(file, args) as (engine, body):
         if own is not None:
             tell_map(own.set_on(engine, body))
+        elif named:
+            engine.set_materials(named, material(args))
         else:
             tell_map(engine.set_material(material(args)))
     return engine
 
 
 def _own(file: Path, args: argparse.Namespace) -> own_material.OwnColours:
+    if getattr(args, "material_of", None):
+        raise InputError(
+            f"--material-of: found with --material {own_material.NAME}, whose colours are those of one mesh"
+        )
     if args.map is not None:
         raise InputError(f"--map: found with --material {own_material.NAME}, whose colours lie where the mesh has them")
     written = [getattr(args, name, None) for name in ("output", "json", "field")]
@@ -158,6 +165,19 @@ def _own(file: Path, args: argparse.Namespace) -> own_material.OwnColours:
 def material(args: argparse.Namespace) -> str:
     """The material's text, with the map that goes with it. Raises InputError."""
     return load_core().with_map(args.material, args.map) if args.map is not None else args.material
+
+
+def by_body(texts: Iterable[str]) -> dict[str, str]:
+    """Materials by the names of bodies, of texts as --material-of takes them. Raises InputError."""
+    found = {}
+    for text in texts:
+        body, equals, material = text.partition("=")
+        if not equals or not body:
+            raise InputError(f"--material-of: found '{text}', expected BODY=M, such as cup=porcelain")
+        if body in found:
+            raise InputError(f"--material-of: found '{body}' twice, one material for each body is allowed")
+        found[body] = material
+    return found
 
 
 def tell_map(report: str) -> None:
@@ -196,8 +216,9 @@ def seen_from(args: argparse.Namespace) -> dict[str, str]:
 def inputs(args: argparse.Namespace) -> list[Path | str | None]:
     """The files, and the texts that may name some, that a run reads."""
     texts = [getattr(args, name, None) for name in ("file", "material")]
-    named = load_core().volume_name(texts[1]) if texts[1] else None
-    return [*texts, named and named[0], *(args.light or [])]
+    others = by_body(getattr(args, "material_of", None) or []).values()
+    named = [load_core().volume_name(text) for text in (texts[1], *others) if text]
+    return [*texts, *others, *(each[0] for each in named if each), *(args.light or [])]
 
 
 def solve(engine: Engine, args: argparse.Namespace) -> dict:

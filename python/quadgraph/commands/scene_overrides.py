@@ -12,23 +12,24 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from quadgraph.base import json_text
 from quadgraph.base.errors import InputError
-from quadgraph.commands import scene_options
+from quadgraph.commands import own_mesh, scene_options
 from quadgraph.core import load_core
 
 _ANGLES = ("azimuth", "elevation", "distance")
 _PLACES = ("eye", "look_at")
 _MAP = "/map"
-_OF_MESHES = ("unit", "height", "longest", "wrap")
 
 
-def apply(file: Any, path: Path, args: argparse.Namespace) -> None:
-    """Change a core.SceneFile of `path` as the options say that were typed (`args.given`). Raises InputError."""
-    for name in _OF_MESHES:
+def apply(file: Any, document: Any, args: argparse.Namespace) -> None:
+    """Change a core.SceneFile of a JSON document as the options say that were typed (`args.given`).
+
+    Raises InputError.
+    """
+    for name in own_mesh.NAMES:
         if name in args.given:
             raise InputError(f"--{name}: not beside a scene file, whose /body is a baked .qgraph that knows its size")
-    put(file, json_text.loads(path.read_bytes()), args)
+    put(file, document, args)
 
 
 def put(file: Any, document: Any, args: argparse.Namespace) -> None:
@@ -71,6 +72,11 @@ def _material(text: str) -> dict[str, Any]:
         return {"/material": text}
     file, how = str(Path(named[0]).absolute()), named[1]
     return {"/material": load_core().with_map(file, _from_here(how)) if how else file}
+
+
+def _materials(texts: list[str]) -> dict[str, Any]:
+    named = scene_options.by_body(texts)
+    return {f"/materials/{body}": _material(text)["/material"] for body, text in named.items()}
 
 
 def _map(text: str) -> dict[str, Any]:
@@ -128,6 +134,7 @@ def _background(text: str) -> dict[str, Any]:
 # Options that a scene file says in another form: from what was typed to JSON values by their pointers.
 OWN_FORMS: dict[str, Callable[[Any], dict[str, Any]]] = {
     "material": _material,
+    "material-of": _materials,
     "map": _map,
     "light": _lights,
     "view": _view,

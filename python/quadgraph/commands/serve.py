@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import json
 import os
-from pathlib import Path
+from collections.abc import Iterator
 from typing import get_args
 
 from rich.console import Console
@@ -13,7 +14,7 @@ from rich.console import Console
 from quadgraph.api.choices import Tone
 from quadgraph.api.scene import Scene
 from quadgraph.base.errors import InputError
-from quadgraph.commands import own_mesh, render_scene, scene_options, scene_overrides
+from quadgraph.commands import own_mesh, scene_file, scene_options, scene_overrides
 from quadgraph.core import load_core
 
 _TOKEN = "QUADGRAPH_SERVE_TOKEN"
@@ -63,9 +64,8 @@ def run(args: argparse.Namespace) -> int:
     token = os.environ.get(_TOKEN, "")
     if token and len(token) < _LEAST_TOKEN:
         raise InputError(f"{_TOKEN}: found {len(token)} letters, allowed are at least {_LEAST_TOKEN}")
-    surface_only = args.method == "shortest-path"
-    with own_mesh.body(args.file, args, surface_only) as body, Stage(device=args.device) as stage:
-        shown = ShownScene(_scene(body, args))
+    with _scene(args) as scene, Stage(device=args.device) as stage:
+        shown = ShownScene(scene)
         hello = {
             "file": args.file.name,
             "materials": list(core.material_names()),
@@ -83,16 +83,18 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _scene(body: Path, args: argparse.Namespace) -> Scene:
-    """The first frame of a scene file, or a body with what the options say."""
-    core = load_core()
-    if render_scene.is_scene(args.file):
-        file = core.SceneFile(args.file)
-        scene_overrides.apply(file, args.file, args)
-    else:
+@contextlib.contextmanager
+def _scene(args: argparse.Namespace) -> Iterator[Scene]:
+    """The first frame of a scene file, or a body with what the options say, there as long as the block runs."""
+    if scene_file.is_scene(args.file):
+        with scene_file.opened(args.file) as (file, document):
+            scene_overrides.apply(file, document, args)
+            yield Scene.from_dict(json.loads(file.at(0).json()))
+        return
+    with own_mesh.body(args.file, args, surface_only=args.method == "shortest-path") as body:
         document = {"body": str(body.resolve()), "material": args.material}
-        file = core.scene_file(json.dumps(document))
+        file = load_core().scene_file(json.dumps(document))
         scene_overrides.put(file, document, args)
         for name, side in zip(("width", "height"), scene_options.size_of(args), strict=True):
             file.set(f"/picture/{name}", str(side))
-    return Scene.from_dict(json.loads(file.at(0).json()))
+        yield Scene.from_dict(json.loads(file.at(0).json()))

@@ -13,7 +13,7 @@ from rich.console import Console
 
 from quadgraph.base import atomic_file, image_file, outputs
 from quadgraph.base.errors import InputError
-from quadgraph.commands import contact_sheet, material_list, picture_output, render_scene, scene_options
+from quadgraph.commands import contact_sheet, material_list, picture_output, scene_file, scene_options
 from quadgraph.commands.progress_bar import progress_bar
 from quadgraph.core import load_core
 
@@ -38,7 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("-o", "--output", type=Path, required=True, metavar="OUT", help="the sheet, .png or .jpg")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write a report of each picture here")
-    scene_options.add_run_arguments(parser, scene_options.RENDER_GROUPS, without=("material", "map"))
+    scene_options.add_run_arguments(parser, scene_options.RENDER_GROUPS, without=("material", "material-of", "map"))
     parser.set_defaults(size=f"{_SIDE}x{_SIDE}")
 
 
@@ -49,7 +49,7 @@ def run(args: argparse.Namespace) -> int:
     outputs.check_outputs([args.output, args.json], [*args.bodies, *materials, *scene_options.inputs(args)])
     material_list.check_sides(args, len(args.bodies) * len(materials))
     for body in args.bodies:
-        if render_scene.is_scene(body):
+        if scene_file.is_scene(body):
             raise InputError(f"{body}: a scene names its own material; meshes and baked .qgraph files are wanted")
     for text in materials:
         if load_core().volume_name(text) is None:

@@ -15,7 +15,15 @@ from rich.console import Console
 from quadgraph.base import atomic_file, image_file, outputs
 from quadgraph.base.arguments import positive_float, positive_int
 from quadgraph.base.errors import InputError
-from quadgraph.commands import converging, frame_output, picture_output, render_scene, scene_options, turning
+from quadgraph.commands import (
+    converging,
+    frame_output,
+    picture_output,
+    render_scene,
+    scene_file,
+    scene_options,
+    turning,
+)
 from quadgraph.commands import solve_report as text
 from quadgraph.commands.progress_bar import progress_bar
 from quadgraph.core import load_core
@@ -49,7 +57,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Render and write; 3 as `scene_options.exit_status` says of all frames."""
-    if render_scene.is_scene(args.file):
+    if scene_file.is_scene(args.file):
         raise InputError(
             f"{args.file}: a scene turns by a track of /camera/azimuth (docs/scene.md); here a body is wanted"
         )

@@ -7,11 +7,12 @@ import os
 import shutil
 import subprocess
 import sys
+import tempfile
 from itertools import pairwise
 from pathlib import Path
 
 from quadgraph.base.errors import InputError
-from quadgraph.commands import own_mesh
+from quadgraph.commands import own_mesh, scene_file
 from quadgraph.mesh import mesh_names
 
 PROGRAM = "quadgraph-engine"
@@ -54,10 +55,26 @@ def run(args: argparse.Namespace) -> int:
 
         if kept.find(args.file, BakeOptions(**own_mesh.sizes(args))) is None:
             return preview.show(program, args.file, args, args.options)
+    if scene_file.is_scene(args.file):
+        return _show_scene(program, args)
     with own_mesh.body(args.file, args, surface_only=_by_shortest_path(args.options)) as path:
         # A scene that is saved must not name a file of the cache, or a temporary one.
         keeping = [] if path == args.file or "--headless" in args.options else ["--copy-body"]
         return subprocess.run([program, path, *keeping, *args.options], check=False).returncode
+
+
+def _show_scene(program: str, args: argparse.Namespace) -> int:
+    """Open the window on a scene, whose bodies are baked first where they are meshes."""
+    if own_mesh.sizes(args):
+        raise InputError(f"{args.file}: --unit, --height, --longest and --wrap are for meshes; a scene says its own")
+    document = scene_file.content(args.file)
+    if not (isinstance(document, dict) and "bodies" in document):
+        return subprocess.run([program, args.file, *args.options], check=False).returncode
+    with scene_file.opened(args.file) as (file, _), tempfile.TemporaryDirectory(prefix="quadgraph-") as folder:
+        baked = Path(folder) / args.file.name
+        file.save(baked)
+        keeping = [] if "--headless" in args.options else ["--copy-body"]
+        return subprocess.run([program, baked, *keeping, *args.options], check=False).returncode
 
 
 def _take_sizes(args: argparse.Namespace) -> None:

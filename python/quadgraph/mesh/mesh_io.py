@@ -13,7 +13,7 @@ import trimesh
 from quadgraph.base import regular_file
 from quadgraph.base.errors import InputError
 from quadgraph.base.units import UPS
-from quadgraph.mesh import gltf_file, mesh_size
+from quadgraph.mesh import gltf_file, mesh_size, named_parts
 from quadgraph.mesh.mesh_text import read_obj, read_off
 from quadgraph.mesh.ply import read_ply
 from quadgraph.mesh.surface import FileFrame, SourceMesh, Surface
@@ -74,14 +74,16 @@ def read_surface(
     height_mm: float | None = None,
     longest_mm: float | None = None,
     up: str = "y",
+    part: str | None = None,
 ) -> SourceMesh:
     """Read a mesh, scale it to millimetres and stand it up along y.
 
     unit "mm", "cm" or "m" of the file's coordinates, the object's height_mm (its extent upwards) or longest_mm (the
     longest side of its bounding box): at most one. Without one the size is as usual, which `SourceMesh.size_note`
     says: that of glTF in metres where that is plausible, else 100 mm along the longest side. up: the axis that
-    points up in the file, "y" or "z". Polygons are cut into triangles; STL and glTF vertices at one position are
-    joined. Nothing is repaired. Raises InputError for a file or option that cannot be used, naming file and field.
+    points up in the file, "y" or "z"; part: the one of that name alone (`named_parts`), at the size of the whole.
+    Polygons are cut into triangles; STL and glTF vertices at one position are joined. Nothing is repaired. Raises
+    InputError for a file or option that cannot be used, naming file and field.
     """
     path = Path(path)
     reader = _READERS.get(path.suffix.lower())
@@ -96,6 +98,8 @@ def read_surface(
     vertices = stood_up(vertices, up)
     unit_mm, note = mesh_size.scale_of(path, vertices[np.unique(triangles)], unit, height_mm, longest_mm)
     surface = Surface(vertices * unit_mm, triangles)
+    if part is not None:
+        surface = Surface(surface.vertices, triangles[named_parts.triangles_of(path, part)]).compacted()
     digest = hashlib.sha256(content).hexdigest()
     return SourceMesh(surface, path.name, digest, FileFrame(unit_mm, up), len(vertices), len(triangles), note)
 

@@ -7,6 +7,8 @@ import os
 from collections.abc import Callable
 from typing import Any
 
+import trimesh
+
 from attack import texts
 from attack.case import Case, Place
 from attack.families.data import PNG
@@ -249,6 +251,33 @@ def settings(rng: Rng) -> Case:
     return scene(rng, f"--set {path}={value[:40]!r}", json.dumps(SCENE), more=(f"--set={path}={value}",), names=(path,))
 
 
+MESHES: dict[str, Any] = {
+    "bodies": [
+        {"name": "left", "mesh": "ball.obj", "unit": "mm", "material": "marble"},
+        {"name": "right", "mesh": "ball.obj", "longest": "4mm", "up": "z", "position": [6, 1, 0]}
+        | {"rotation": [10, 20, 30], "scale": 1.1, "material": {"name": "marble", "sigma_a": 1}},
+    ],
+    "materials": {},
+    "solver": {"correction": False},
+    "picture": {"width": 32, "height": 32},
+}
+
+
+def several(rng: Rng) -> Case:
+    """A scene of meshes, a value of which is of another kind, or a number of any size."""
+    path = texts.pick(rng, texts.places(MESHES))
+    wild = isinstance(texts.at(MESHES, path), int | float) and rng.integers(2)
+    value = texts.extreme(rng) if wild else texts.junk(rng)
+    text = json.dumps(texts.replaced(MESHES, path, value)).replace("NaN", "0").replace("Infinity", "1e300")
+
+    def ball(place: Place) -> None:
+        mesh = trimesh.creation.icosphere(subdivisions=2, radius=2)
+        (place.folder / "ball.obj").write_text(mesh.export(file_type="obj"))
+
+    title = f"/{'/'.join(map(str, path))} is {value!r:.60}".replace("\x1b", "")
+    return scene(rng, title, text, more=("--frame=0",), extra=ball, names=("ball.obj",))
+
+
 def good(rng: Rng) -> Case:
     """The scene as it is, in any frame."""
     frame = f"--frame={rng.integers(4)}"
@@ -267,5 +296,6 @@ RECIPES = (
     deformers,
     pictures,
     settings,
+    several,
     good,
 )

@@ -90,7 +90,7 @@ def test_buffers_of_a_gltf_count(tmp_path):
     keys = set()
     for content in (b"1234", b"1235"):
         (tmp_path / "a.bin").write_bytes(content)
-        keys.add(kept._key(path, BakeOptions()))
+        keys.add(kept._key([path], BakeOptions()))
     assert len(keys) == 2
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import quadgraph
+import two_cubes
 from baked import write_levels
 from quadgraph.base.errors import InputError
 from quadgraph.browser.frame_loop import Inbox, Message
@@ -49,6 +50,19 @@ def test_a_value_is_set_and_undone(shown):
     assert shown.document == before
     with pytest.raises(InputError, match="nothing to undo"):
         shown.undo()
+
+
+def test_the_material_of_a_page_is_that_of_all_bodies():
+    made = ShownScene(quadgraph.Scene(two_cubes.PATH, material="skin1", materials={"left": "jade"}, lights=[]))
+    before = made.document
+    made.set("/material", "marble")
+    assert made.document["material"] == "marble"
+    assert "materials" not in made.document
+    made.undo()
+    assert made.document == before
+    assert before["materials"] == {"left": "jade"}
+    with pytest.raises(InputError, match="a page may set"):
+        made.set("/materials/left", "wax")
 
 
 def test_a_slider_that_is_drawn_is_one_step(shown):

@@ -33,7 +33,7 @@ def test_a_script_knows_all_commands_and_options(shell, capsys):
     ("words", "completed"),
     [
         (["quadgraph", "tu"], ["turntable"]),
-        (["quadgraph", "render", "--mat"], ["--material"]),
+        (["quadgraph", "render", "--mat"], ["--material", "--material-of"]),
         (["quadgraph", "render", "--method", "quadgraph-"], ["quadgraph-fv", "quadgraph-fdm"]),
         (["quadgraph", "turntable", "--turn", "bo"], ["body"]),
         (["quadgraph", "completion", "z"], ["zsh"]),

@@ -62,7 +62,7 @@ def overridden(path, *arguments: str) -> dict:
     commands = {"render": cli.importlib.import_module("quadgraph.commands.render")}
     args = cli.build_parser(commands, {}).parse_args(["render", str(path), "-o", "a.png", *arguments])
     file = _core.SceneFile(path)
-    scene_overrides.apply(file, path, args)
+    scene_overrides.apply(file, json.loads(path.read_text()), args)
     return json.loads(file.at(0).json())
 
 
@@ -126,7 +126,7 @@ def test_tracks_of_what_is_typed_are_left_out_and_others_stay(scene, tmp_path):
     path = scene(tracks=tracks)
     args = argparse.Namespace(view="5,6", given={"view"})
     file = _core.SceneFile(path)
-    scene_overrides.apply(file, path, args)
+    scene_overrides.apply(file, json.loads(path.read_text()), args)
     last = json.loads(file.at(3).json())
     assert last["camera"]["azimuth"] == 5
     assert last["lights"][0]["irradiance"] == 2

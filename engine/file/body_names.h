@@ -1,0 +1,22 @@
+// The bodies of a .qgraph file by name, which its metadata list.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace quadgraph {
+
+inline constexpr std::size_t most_bodies = 256;  // a tet's is a byte
+inline constexpr std::size_t most_name_bytes = 64;
+
+// Whether a name can be that of a body: 1 to most_name_bytes bytes, no control characters, and none of "=", "/", "~",
+// which command lines and paths into scenes would split it at.
+bool is_body_name(std::string_view name);
+
+// Names in their order, none of one body without a name. Throws FormatError naming `file` where the metadata, a JSON
+// object as text, have others than 1 to most_bodies different ones.
+std::vector<std::string> body_names(const std::string& metadata, const std::string& file);
+
+}  // namespace quadgraph

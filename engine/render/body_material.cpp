@@ -1,0 +1,108 @@
+#include "engine/render/body_material.h"
+
+#include <algorithm>
+
+#include "engine/base/text.h"
+#include "engine/optics/depth.h"
+#include "engine/optics/fresnel.h"
+#include "engine/reference/tet_points.h"
+#include "engine/render/engine_implementation.h"
+#include "shaders/material/material.h"
+
+namespace quadgraph {
+namespace {
+
+using OfRow = std::function<std::uint32_t(std::uint32_t)>;
+
+// At all points of a level, each by the material of its body.
+std::vector<gpu::Optical> coefficients(const Level& level, std::span<const glm::vec3> points, const OfRow& body_of,
+                                       std::span<const BodyMaterial> materials) {
+  std::vector<std::vector<std::uint32_t>> rows(materials.size());
+  for (std::uint32_t i = 0; i < points.size(); ++i) rows[body_of(i)].push_back(i);
+  std::vector<gpu::Optical> optical(points.size());
+  for (std::size_t body = 0; body < materials.size(); ++body) {
+    std::vector<glm::vec3> places;
+    for (std::uint32_t row : rows[body]) places.push_back(points[row]);
+    const BodyMaterial& material = materials[body];
+    const std::vector<float> depths = material.wants_depth ? depth_below_surface(level, places) : std::vector<float>{};
+    const std::vector<gpu::Optical> found = material.at(places, depths);
+    for (std::size_t k = 0; k < found.size(); ++k) optical[rows[body][k]] = found[k];
+  }
+  return optical;
+}
+
+std::vector<gpu::Optical> at_nodes(const Level& level, std::span<const BodyMaterial> materials) {
+  const auto body_of = [&](std::uint32_t node) {
+    return node < level.tet_count() ? level.body_of_tet(node) : level.body_of_face(node - level.tet_count());
+  };
+  return coefficients(level, level.nodes, body_of, materials);
+}
+
+void check_materials(std::span<const BodyMaterial> materials, std::span<const std::string> bodies) {
+  if (bodies.empty()) throw InputError("materials: found for a file of one body without a name; set its material");
+  if (materials.size() != bodies.size()) {
+    throw InputError("materials: " + std::to_string(materials.size()) + " found, one for each of " +
+                     std::to_string(bodies.size()) + " bodies wanted");
+  }
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    check_eta(static_cast<double>(materials[i].eta));
+    if (materials[i].eta == materials[0].eta) continue;
+    throw InputError("materials: eta=" + number_text(materials[0].eta) + " found of '" + bodies[0] +
+                     "' and eta=" + number_text(materials[i].eta) + " of '" + bodies[i] +
+                     "'; bodies of one file have one index of refraction: add eta=" + number_text(materials[0].eta) +
+                     " to the material of '" + bodies[i] + "'");
+  }
+}
+
+}  // namespace
+
+BodyMaterial body_material(const std::string& text) {
+  const gpu::Material material = parse_material(text);
+  const bool layered = material.pattern == gpu::PATTERN_LAYERS;
+  return {.text = text,
+          .eta = material.eta,
+          .roughness = stated_roughness(text).value_or(default_roughness),
+          .wants_depth = layered,
+          .angles = material,
+          .at = [material, layered](std::span<const glm::vec3> points, std::span<const float> depths) {
+            std::vector<gpu::Optical> optical;
+            for (std::size_t i = 0; i < points.size(); ++i) {
+              optical.push_back(gpu::material_at(material, points[i], layered ? depths[i] : 0));
+            }
+            return optical;
+          }};
+}
+
+std::string text_of(std::span<const BodyMaterial> materials, std::span<const std::string> bodies) {
+  std::string text;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    text += (text.empty() ? "" : "; ") + bodies[i] + ": " + materials[i].text;
+  }
+  return text;
+}
+
+void Engine::set_materials(std::span<const BodyMaterial> materials) {
+  const auto turn = implementation_->in_use.take();
+  auto& self = *implementation_;
+  const std::vector<std::string>& bodies = self.graph.bodies();
+  check_materials(materials, bodies);
+  Simulation& simulation = self.levels();
+  const std::vector<Level>& levels = self.graph.levels();
+  const std::vector<gpu::Optical> elsewhere = coefficients(
+      levels[0], points_in_tets(levels[0]), [&](std::uint32_t tet) { return levels[0].body_of_tet(tet); }, materials);
+  for (std::uint32_t i = 0; i < levels.size(); ++i) {
+    simulation.set_optical(i, at_nodes(levels[i], materials), materials[0].eta,
+                           i == 0 ? std::span(elsewhere) : std::span<const gpu::Optical>());
+  }
+  std::vector<gpu::Material> angles;
+  for (const BodyMaterial& material : materials) angles.push_back(material.angles);
+  simulation.set_angles(angles);
+  self.paths.clear();
+  self.material = text_of(materials, bodies);
+  self.certainty = {};
+  self.eta = materials[0].eta;
+  self.body_roughness.emplace(self.device, self.graph, materials);
+  self.stale();
+}
+
+}  // namespace quadgraph

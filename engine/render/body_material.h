@@ -1,0 +1,30 @@
+// What one of several bodies in a file is made of.
+#pragma once
+
+#include <functional>
+#include <glm/vec3.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/optics/material.h"
+
+namespace quadgraph {
+
+struct BodyMaterial {
+  std::string text{};  // as it was said
+  float eta = default_eta;
+  float roughness = default_roughness;  // GGX alpha
+  bool wants_depth = false;
+  gpu::Material angles{};  // of what is known of the angles of scattering, its g and second_g
+  // Coefficients at points, mm, in the shape at rest; depths: mm below the surface, empty unless they are wanted.
+  std::function<std::vector<gpu::Optical>(std::span<const glm::vec3> points, std::span<const float> depths)> at{};
+};
+
+// Of a material's text. Throws InputError as parse_material.
+BodyMaterial body_material(const std::string& text);
+
+// "cup: porcelain; stone: jade".
+std::string text_of(std::span<const BodyMaterial> materials, std::span<const std::string> bodies);
+
+}  // namespace quadgraph
