@@ -136,6 +136,9 @@ def run_import(args: argparse.Namespace) -> int:
 
 def import_lines(record: dict[str, Any]) -> list[str]:
     """What an import found, a line a lens and a photograph."""
+    from quadgraph.acquisition.capture.strict_json import Member
+    from quadgraph.acquisition.checking import import_record
+
     lines = []
     for lens in record["lenses"]:
         radial, tangential = lens["radial"], lens["tangential"]
@@ -149,6 +152,8 @@ def import_lines(record: dict[str, Any]) -> list[str]:
         if "corners" in each:
             said += f" mm; {len(each['corners'])} corners, {each['reprojection']:.2f} pixels off (RMS)"
         lines.append(said)
+    for name, lamp in record["lamps"].items():
+        lines.append(f"lamp {name}: {import_record.found_lamp(Member('', '', lamp)).line()}")
     return lines
 
 
