@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -30,12 +31,18 @@ def lamp_light(position: Any, power: Any) -> Light:
     return of
 
 
+@cache
+def _rays(lens: Lens, samples: int) -> np.ndarray:
+    """(h s w s, 3) ways of rays, of length 1 along the axis."""
+    steps = [(np.arange(side * samples) + 0.5) / samples for side in (lens.width, lens.height)]
+    slopes = lens.slopes(np.stack(np.meshgrid(*steps), axis=-1).reshape(-1, 2))
+    return np.concatenate([slopes, np.ones((len(slopes), 1))], axis=1)
+
+
 def at_board(lens: Lens, pose: Pose, samples: int = 1) -> tuple[np.ndarray, np.ndarray]:
     """Places (h s, w s, 2), mm, where rays meet the board's plane, and which of them do."""
     high, wide = lens.height * samples, lens.width * samples
-    across, down = np.meshgrid((np.arange(wide) + 0.5) / samples, (np.arange(high) + 0.5) / samples)
-    slopes = lens.slopes(np.stack([across.ravel(), down.ravel()], axis=1))
-    ways = np.concatenate([slopes, np.ones((len(slopes), 1))], axis=1) @ pose.rotation
+    ways = _rays(lens, samples) @ pose.rotation
     met = ways[:, 2] < -1e-3
     reach = np.where(met, -pose.eye[2] / np.where(met, ways[:, 2], -1), 0)
     return (pose.eye[:2] + reach[:, None] * ways[:, :2]).reshape(high, wide, 2), met.reshape(high, wide)
@@ -107,3 +114,49 @@ class LampScene:
 def errors(found: Sequence[float], true: Sequence[float]) -> float:
     """How far two places are apart, mm."""
     return float(np.linalg.norm(np.asarray(found) - np.asarray(true)))
+
+
+def shaded(light: Light, lamp: Any, middle: Any, radius: float, left: float = 0.02, thrown: float = 0.2) -> Light:
+    """A light before which a ball stands: in its shadow a share is left; beside it the board gets some of its light."""
+    lamp, middle = np.array(lamp, float), np.array(middle, float)
+
+    def of(places: np.ndarray) -> np.ndarray:
+        flat = np.concatenate([places, np.zeros((len(places), 1))], axis=1)
+        ways = lamp - flat
+        ways /= np.linalg.norm(ways, axis=1, keepdims=True)
+        towards = middle - flat
+        along = (towards * ways).sum(axis=1)
+        beside = np.sqrt(np.maximum((towards**2).sum(axis=1) - along**2, 0))
+        free = np.clip((beside - radius) / 1.5 + 0.5, left, 1)  # a penumbra of 1.5 mm
+        near = np.exp(-np.maximum(np.linalg.norm(places - middle[:2], axis=1) - 0.6 * radius, 0) / 12)
+        return light(places) * (free[:, None] + thrown * near[:, None] * np.array([1, 0.8, 0.5]))
+
+    return of
+
+
+class BackgroundScene:
+    """A ball on the board under a lamp, and the board without it, drawn by a seed; values of full scale 1."""
+
+    def __init__(self, seed: int) -> None:
+        """Draw ball, lamp and camera."""
+        self.lamp = LampScene(seed, photographs=1)
+        draw = self.lamp.generator.uniform
+        self.radius = float(draw(15, 28))
+        self.middle = self.lamp.middle + np.array([draw(-20, 20), draw(-20, 20), self.radius])
+        self.pose = self.lamp.poses[0]
+        light = lamp_light(self.lamp.position, self.lamp.power)
+        bare = reflected(Board(), board_photographs.LENS, self.pose, light)
+        self.gain = FULL / float(bare.max())
+        self.empty = bare * self.gain
+        dark = shaded(light, self.lamp.position, self.middle, self.radius)
+        self.shown = reflected(Board(), board_photographs.LENS, self.pose, dark) * self.gain
+        ways = board_photographs.middles(board_photographs.LENS) @ self.pose.rotation
+        ways = (ways / np.linalg.norm(ways, axis=2, keepdims=True)).reshape(-1, 3)
+        eyes = np.broadcast_to(self.pose.eye, ways.shape)
+        met, radiance = board_photographs.ball(self.middle, self.radius)(eyes, ways)
+        self.shown.reshape(-1, 3)[met] = radiance[met] * draw(0.3, 0.8)
+        self.body = met.reshape(self.shown.shape[:2])
+
+    def pictures(self, noise: tuple[float, float]) -> tuple[Radiance, Radiance]:
+        """The photograph and the background with noise."""
+        return tuple(radiance_of(each, noise, self.lamp.generator) for each in (self.shown, self.empty))

@@ -16,7 +16,7 @@ from quadgraph.acquisition.cameras.placed_body import PlacedBody
 from quadgraph.acquisition.capture.capture import NoiseModel
 from quadgraph.acquisition.capture.radiance import Radiance
 from quadgraph.acquisition.lighting.point_lamp import PointLamp
-from quadgraph.acquisition.session import exr_writer, resampling
+from quadgraph.acquisition.session import exr_writer, light_finding, resampling
 from quadgraph.acquisition.session.exposures import ShotContent
 from quadgraph.acquisition.session.locating import LocatedCamera
 from quadgraph.acquisition.session.session_file import Session
@@ -43,7 +43,9 @@ def record_of(path: Path) -> Path:
 def outputs(session: Session, output: Path) -> list[Path]:
     """All files that an import writes."""
     names = [f"{output.stem}-{name_of(number)}" for number in range(len(session.shots))]
-    return [output, record_of(output), *(output.with_name(name + end) for name in names for end in _ENDS.values())]
+    pictures = light_finding.pictures_of(session, output)
+    pictures += [output.with_name(name + end) for name in names for end in _ENDS.values()]
+    return [output, record_of(output), *pictures]
 
 
 def view_of(session: Session, shot: Shot, camera: LocatedCamera, body: PlacedBody) -> PinholeView:

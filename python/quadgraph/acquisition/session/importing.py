@@ -9,7 +9,7 @@ from typing import Any
 
 from quadgraph.acquisition.cameras.placed_body import PlacedBody, surface
 from quadgraph.acquisition.capture import capture
-from quadgraph.acquisition.session import capture_writing, lamp_finding, locating
+from quadgraph.acquisition.session import background_masks, capture_writing, light_finding, locating
 from quadgraph.acquisition.session.exposures import Exposures
 from quadgraph.acquisition.session.session_file import Session
 from quadgraph.base import atomic_file
@@ -33,8 +33,8 @@ def import_session(
         advance(0.6 * (number + 1) / len(session.all_shots()))
     seen = {path: each.corners for path, each in found.items()}
     cameras = locating.locate(session, {path: each.size for path, each in found.items()}, seen)
-    lamps = lamp_finding.find(session, exposures, cameras)
-    session = replace(session, lights=lamp_finding.lights(session, lamps))
+    lamps = light_finding.find(session, exposures, cameras)
+    session = replace(session, lights=light_finding.lights(session, lamps, output))
     views, entries = {}, []
     for number, shot in enumerate(session.shots):
         name = capture_writing.name_of(number)
@@ -42,6 +42,8 @@ def import_session(
         views[name] = capture_writing.view_of(session, shot, camera, body)
         radiance = exposures.merged(shot)
         kept = capture_writing.kept_of(session, shot, radiance)
+        if shot.background:
+            kept = background_masks.kept_of(session, shot, radiance, exposures.merged(shot.emptied()))
         picture = capture_writing.picture_of(session, shot, radiance, kept, camera, views[name], body)
         entries.append(capture_writing.write_photograph(shot, picture, output, name))
         advance(0.6 + 0.4 * (number + 1) / len(session.shots))

@@ -1,4 +1,7 @@
-"""Lights as a session.json states them: those of scene files, and lamps that photographs of the board alone tell."""
+"""Lights as a session.json states them.
+
+They are those of scene files, lamps that photographs of the board alone tell, and projectors that were calibrated.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +13,7 @@ from typing import Any
 from quadgraph.acquisition.capture import capture
 from quadgraph.acquisition.capture.strict_json import Member
 from quadgraph.acquisition.lighting.point_lamp import REFLECTANCE, REFLECTANCE_DEVIATION
-from quadgraph.acquisition.session.shots import Shot, frames_of
+from quadgraph.acquisition.session.shots import LARGEST, Shot, frames_of
 from quadgraph.base.errors import InputError
 
 MOST_BOARDS = 64  # photographs of the board under one lamp
@@ -28,20 +31,57 @@ class LampStatement:
     deviation: float
 
 
-def read(member: Member, folder: Path, board: bool) -> tuple[dict[str, dict[str, Any]], dict[str, LampStatement]]:
-    """The lights that are known, and those to be found, by their names. board: whether there is one to tell them.
-
-    Raises InputError.
+@dataclass(frozen=True)
+class ProjectorStatement:
+    """A projector. path: into the session; calibrated: file of `projector_file`; shown: the picture that it showed, of
+    its own size; power: W, of three channels, if it shows white all over.
     """
-    known, lamps = {}, {}
+
+    path: str
+    calibrated: Path
+    shown: Path
+    power: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Lights:
+    """All lights by their names: those that are known, lamps to be found, and projectors."""
+
+    known: Mapping[str, dict[str, Any]]
+    lamps: Mapping[str, LampStatement]
+    projectors: Mapping[str, ProjectorStatement]
+
+
+def read(member: Member, folder: Path, board: bool) -> Lights:
+    """All lights. board: whether there is one to tell lamps. Raises InputError."""
+    known, lamps, projectors = {}, {}, {}
     for name, each in member.named().items():
-        if isinstance(each.value, Mapping) and "calibrate" in each.value:
+        if isinstance(each.value, Mapping) and "calibrated" in each.value:
+            projectors[name] = _projector(each, folder)
+        elif isinstance(each.value, Mapping) and "calibrate" in each.value:
             if not board:
                 raise InputError(f"{each.file}: {each.path}.calibrate: found without `board`, whose paper tells it")
             lamps[name] = _lamp(name, each, folder)
         else:
             known[name] = capture.light(each, folder)
-    return known, lamps
+    return Lights(known, lamps, projectors)
+
+
+def _projector(member: Member, folder: Path) -> ProjectorStatement:
+    members = member.members(("type", "calibrated", "shown"), ("power",))
+    members["type"].one_of(("projector",), "what is calibrated is a projector")
+    power, found = members.get("power"), [1.0]
+    if power:
+        each = power.items(3) if isinstance(power.value, list) else [power]
+        found = [one.number(0, LARGEST, "W, if it shows white all over") for one in each]
+    if len(found) == 2:
+        member.wrong("allowed is a power, or three of red, green and blue")
+    return ProjectorStatement(
+        member.path,
+        capture.file_of(members["calibrated"], folder, "what quadgraph capture projector wrote"),
+        capture.file_of(members["shown"], folder, "the picture that it showed"),
+        (found[0], found[len(found) // 2], found[-1]),
+    )
 
 
 def _lamp(name: str, member: Member, folder: Path) -> LampStatement:

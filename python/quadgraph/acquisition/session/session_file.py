@@ -15,7 +15,7 @@ from quadgraph.acquisition.capture import capture
 from quadgraph.acquisition.capture.capture import NoiseModel
 from quadgraph.acquisition.capture.strict_json import Member
 from quadgraph.acquisition.session import light_statements
-from quadgraph.acquisition.session.light_statements import LampStatement
+from quadgraph.acquisition.session.light_statements import LampStatement, ProjectorStatement
 from quadgraph.acquisition.session.shots import Shot, read_shot
 from quadgraph.base import json_text
 from quadgraph.base.errors import InputError
@@ -47,6 +47,7 @@ class Session:
     placement: Placement
     lights: Mapping[str, dict[str, Any]]
     lamps: Mapping[str, LampStatement]
+    projectors: Mapping[str, ProjectorStatement]
     noise: NoiseModel | None
     saturation: float | None
     black: tuple[Path, ...]
@@ -61,7 +62,10 @@ class Session:
         """All files that it names, and its own."""
         found = [self.path, self.body, *self.black, *([self.cameras] if self.cameras else [])]
         for shot in self.all_shots():
-            found += [*(frame.file for frame in shot.frames), *([shot.mask] if shot.mask else [])]
+            found += [frame.file for frame in (*shot.frames, *shot.background)]
+            found += [shot.mask] if shot.mask else []
+        for projector in self.projectors.values():
+            found += [projector.calibrated, projector.shown]
         return found
 
 
@@ -94,7 +98,7 @@ def _session(path: Path, document: Member) -> Session:
     polarised = members.get("polarised")
     if polarised is not None and not isinstance(polarised.value, bool):
         polarised.wrong("allowed are true and false")
-    lights, lamps = light_statements.read(members["lights"], folder, "board" in members)
+    lights = light_statements.read(members["lights"], folder, "board" in members)
     names = list(members["lights"].named())
     unit, size, saturation = members.get("unit"), members.get("size"), members.get("saturation")
     return Session(
@@ -107,8 +111,9 @@ def _session(path: Path, document: Member) -> Session:
         members["eta"].number(1, 3, "index of refraction inside over outside"),
         bool(polarised and polarised.value),
         _placement(members["pose"], False) if "pose" in members else Placement(1.0, (0, 0, 1), 0.0, np.zeros(3)),
-        lights,
-        lamps,
+        lights.known,
+        lights.lamps,
+        lights.projectors,
         capture.noise_of(members["noise"]) if "noise" in members else None,
         saturation.number(0, _LARGEST, "a value; 1 is the full scale of a .png and a raw file", True)
         if saturation
