@@ -13,7 +13,9 @@ from scipy.ndimage import map_coordinates
 import board_photographs
 import board_session
 import foreign_files
+import lit_boards
 import twin_capture
+from quadgraph.acquisition.board.board import Board
 from quadgraph.acquisition.cameras.lens import Pose, view_towards
 from quadgraph.cli import main
 
@@ -28,14 +30,15 @@ LAMP: dict[str, Any] = {
     "v": [-30, -30, 80],
     "power": [1000, 900, 800],
 }
+POINT: dict[str, Any] = {"type": "point", "position": [210, 210, 200], "power": [2000, 1800, 1600]}
 RADIUS, DETAIL = 24.0, 360  # mm around the body, and pixels of the engine's pictures that are photographed
 NOISE = (0.003, 1e-3)  # read-out and shot noise of a value: 3% of white, as of a small sensor
 WHITE = 0.7  # of full scale, that the brightest of the body has at an exposure of 1
 
 
-def body_of(folder: Path, gain: list[float]) -> Any:
+def body_of(folder: Path, gain: list[float], light: dict[str, Any] = LAMP) -> Any:
     """What the engine sees of the finer body from each pose; `gain` gets what makes of its radiance a value."""
-    lamp = LAMP | {"centre": (np.array(LAMP["centre"]) - PLACE).tolist()}
+    lamp = light | {name: (np.array(light[name]) - PLACE).tolist() for name in ("centre", "position") if name in light}
 
     def at(pose: Pose) -> board_photographs.Body:
         view = view_towards(pose.eye - PLACE, np.zeros(3), RADIUS, DETAIL)
@@ -68,6 +71,44 @@ def recovered(folder: Path, name: str) -> np.ndarray:
     said = json.loads(Path(made[2]).read_text())
     assert not said["findings"]
     return np.array([np.array(said["coefficients"][key]) / twin_capture.TRUTH[key] - 1 for key in twin_capture.TRUTH])
+
+
+def boards(folder: Path, gain: float) -> list[dict[str, Any]]:
+    """Five photographs of the board alone under the point lamp, two exposures each."""
+    generator = np.random.default_rng(5)
+    light = lit_boards.lamp_light(POINT["position"], POINT["power"])
+    shots = []
+    for number, pose in enumerate(board_photographs.around([87.5, 112.5, 0.0], 330.0, 5, 50, 40.0)):
+        radiance = lit_boards.reflected(Board(), board_photographs.LENS, pose, light) * gain
+        frames = []
+        for step, exposure in enumerate((0.25 / radiance.max(), 0.9 / radiance.max())):
+            name = f"lamp-{number}-{step}.png"
+            picture = board_photographs.exposed(radiance, exposure, NOISE, generator, board_session.BLACK)
+            board_photographs.write_png(folder / name, picture)
+            frames.append({"file": name, "exposure": float(exposure)})
+        shots.append({"frames": frames})
+    return shots
+
+
+@pytest.mark.long
+def test_a_lamp_from_the_board_is_as_good_as_the_exact_one(tmp_path):
+    """Place and power of a point lamp by five photographs of the board; the power stands in for the camera's gain."""
+    twin_capture.bodies(tmp_path)
+    gain: list[float] = []
+    poses = board_session.cameras()[::3]
+    more = {"body": "potato.qgraph", "eta": twin_capture.ETA, "lights": {"lamp": POINT}, "size": 64}
+    pose = {"pose": {"translate": PLACE.tolist()}}
+    path = board_session.write(tmp_path, poses, shows=body_of(tmp_path, gain, POINT), noise=NOISE, **more, **pose)
+    document = json.loads(path.read_text())
+    del document["unit"]
+    lamp = {"type": "point", "calibrate": boards(tmp_path, gain[0]), "reflectance": board_photographs.PAPER}
+    for name, factor, light in (("exact", gain[0], POINT), ("found", 1.0, lamp)):
+        shots = [shot | {"gain": factor} for shot in document["photographs"]]
+        stated = document | {"lights": {"lamp": light}, "photographs": shots}
+        (tmp_path / f"{name}.json").write_text(json.dumps(stated))
+    by_exact, by_found = (recovered(tmp_path, name) for name in ("exact", "found"))
+    assert np.abs(by_exact).max() < 0.05
+    assert np.sqrt((by_found**2).mean()) < 1.5 * np.sqrt((by_exact**2).mean())
 
 
 @pytest.mark.long

@@ -12,6 +12,7 @@ import pytest
 
 import board_photographs
 import board_session
+import foreign_files
 import lit_boards
 from quadgraph.acquisition.board.board import Board
 from quadgraph.acquisition.lighting import board_whites, point_lamp
@@ -173,6 +174,18 @@ def test_the_session_s_lamp_is_written_into_the_capture(session, capsys):
     assert main(["capture", "check", str(folder / "capture.json"), "--page", str(folder / "check.html")]) in (0, 3)
     assert "lamp lamp: " in capsys.readouterr().out
     assert "W times gain, to" in (folder / "check.html").read_text()
+
+
+def test_cameras_of_another_program_need_not_know_the_board_s_photographs(session, tmp_path):
+    folder, scene, gain = session
+    poses = {f"{number}-1.png": (LENS, pose) for number, pose in enumerate(board_session.cameras()[:8:2])}
+    foreign_files.nerf(folder / "transforms.json", poses)
+    lamp = json.loads((folder / "session.json").read_text())["lights"]["lamp"]
+    path = with_lamp(session, tmp_path, lamp, cameras="transforms.json", world={"scale": 1.0})
+    assert main(["capture", "import", str(path), "-o", str(folder / "foreign.json")]) == 0
+    light = json.loads((folder / "foreign.json").read_text())["lights"]["lamp"]
+    assert np.linalg.norm(np.array(light["position"]) - scene.position) < 5
+    np.testing.assert_allclose(light["power"], scene.power * gain, rtol=0.03)
 
 
 def with_lamp(session: tuple[Path, Any, float], tmp_path: Path, lamp: Any, **more: Any) -> Path:

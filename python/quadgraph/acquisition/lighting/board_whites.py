@@ -11,8 +11,8 @@ from quadgraph.acquisition.cameras.lens import Lens, Pose
 from quadgraph.acquisition.capture.radiance import Radiance
 from quadgraph.base.errors import InputError
 
-_ACROSS = np.linspace(-0.1, 0.1, 3)  # of a strip's width, from its middle: places that are averaged
-_ALONG = np.linspace(0.05, 0.45, 14)  # of a strip's length, from either end
+_ACROSS = np.linspace(-0.2, 0.2, 5)  # of a strip's width, from its middle: places that are averaged
+_ALONG = np.linspace(0.05, 0.45, 22)  # of a strip's length, from either end
 _CLEAR = 1.5  # pixels from the places to the ink, that blur must not reach
 LEAST = 24  # samples of a photograph
 
