@@ -20,13 +20,17 @@ FULL = 0.8  # of full scale, that the brightest paper has
 PAPER = board_photographs.PAPER  # reflectance of the white squares
 
 
-def lamp_light(position: Any, power: Any) -> Light:
-    """The irradiance of an isotropic point light, W/mm^2, of powers (3,) in W."""
+def lamp_light(position: Any, power: Any, aim: Any = None) -> Light:
+    """The irradiance of an isotropic point light, W/mm^2, of powers (3,) in W; or of a Lambertian one that aims."""
 
     def of(places: np.ndarray) -> np.ndarray:
         away = np.array(position, float) - np.concatenate([places, np.zeros((len(places), 1))], axis=1)
         distance = np.linalg.norm(away, axis=1)
-        return (np.maximum(away[:, 2], 0) / (4 * np.pi * distance**3))[:, None] * np.array(power, float)
+        lit = np.maximum(away[:, 2], 0) / (4 * np.pi * distance**3)
+        if aim is not None:
+            axis = (aim - np.array(position, float)) / np.linalg.norm(aim - np.array(position, float))
+            lit = 4 * lit * np.maximum(-away @ axis / distance, 0)
+        return lit[:, None] * np.array(power, float)
 
     return of
 
@@ -67,7 +71,10 @@ def radiance_of(shown: np.ndarray, noise: tuple[float, float], generator: np.ran
 
 @dataclass
 class LampScene:
-    """A lamp over the board and cameras around it, drawn by a seed. falls: of the lens, exp(-falls s^2)."""
+    """A lamp over the board and cameras around it, drawn by a seed.
+
+    falls: of the lens, exp(-falls s^2); forwards: the lamp is a small Lambertian surface that looks at the middle.
+    """
 
     seed: int
     photographs: int = 3
@@ -75,6 +82,7 @@ class LampScene:
     falls: float = 0.0
     gloss: float = 0.0
     ambient: float = 0.0
+    forwards: bool = False
     board: Board = field(default_factory=Board)
 
     def __post_init__(self) -> None:
@@ -92,7 +100,7 @@ class LampScene:
 
     def shown(self, pose: Pose, lens: Lens = board_photographs.LENS) -> np.ndarray:
         """(h, w, 3) radiance of a photograph, W/(mm^2 sr)."""
-        light = lamp_light(self.position, self.power)
+        light = lamp_light(self.position, self.power, self.middle if self.forwards else None)
         shown = reflected(self.board, lens, pose, lambda places: light(places) + self.ambient * self.power)
         places, _ = at_board(lens, pose)
         flat = np.concatenate([places, np.zeros((*places.shape[:2], 1))], axis=2)

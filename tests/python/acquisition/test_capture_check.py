@@ -204,7 +204,8 @@ def one_side(document, told, folder):
 def told_lamp(told, **more):
     boards = [{"files": ["l.png"], "moved": 0.1, "reprojection": 0.05}] * more.pop("boards", 3)
     numbers = {"position": [260, 40, 260], "position_deviation": [1, 1, 1], "power": [9, 8, 7]}
-    lamp = numbers | {"power_deviation": [0.5, 0.4, 0.4], "share": 0.01, "off": 0.004, "boards": boards}
+    numbers |= {"power_deviation": [0.5, 0.4, 0.4], "share": 0.01, "off": 0.004}
+    lamp = numbers | {"unlike": False, "boards": boards}
     told["lamps"] = {"lamp": lamp | more}
 
 
@@ -220,6 +221,10 @@ def another_lamp_on(document, told, folder):
     told_lamp(told, off=0.3)
 
 
+def another_kind(document, told, folder):
+    told_lamp(told, unlike=True)
+
+
 def room_light(document, told, folder):
     told_lamp(told, share=0.4)
 
@@ -233,6 +238,7 @@ SPOILT = [
     (few_boards, 0, "lights.lamp: told by 1 of the board's photographs"),
     (shaded_board, 0, "lights.lamp: the board is lit otherwise than by one small lamp, 7.0% off (RMS)"),
     (another_lamp_on, 3, "lights.lamp: the board is lit otherwise than by one small lamp, 30.0% off (RMS)"),
+    (another_kind, 0, "lights.lamp: the board is lit as by the other kind of lamp"),
     (room_light, 0, "lights.lamp: 40% of the light on the board is not the lamp's"),
     (bumped_board, 3, "lights.lamp: the camera moved by 5.0 pixels in a photograph of the board"),
     (bent, 0, "photographs[2]: the board's corners are 0.90 pixels off (RMS), 0.07 in the others: it disagrees"),

@@ -18,7 +18,7 @@ from quadgraph.base.regular_file import read_bytes
 _FAR = 1e9
 _MOST_CORNERS = 10_000
 _MEMBERS = ("photograph", "files", "exposures", "exposure_ratios", "moved", "samples", "size", "eye")
-_MORE_OF_LAMPS = ("ambient", "falloff", "samples", "reflectance", "reflectance_deviation")
+_MORE_OF_LAMPS = ("ambient", "falloff", "samples", "reflectance", "reflectance_deviation", "aim")
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +36,7 @@ class Imported:
 
 @dataclass(frozen=True)
 class FoundLamp:
-    """As `point_lamp.PointLamp` has it; boards: photographs of the board; worst: the largest RMS distance of its
+    """As `near_lamp.NearLamp` has it; boards: photographs of the board; worst: the largest RMS distance of its
     corners in one of them, pixels; moved: the farthest that a camera moved between exposures, pixels.
     """
 
@@ -46,6 +46,7 @@ class FoundLamp:
     power_deviation: tuple[float, ...]
     share: float
     off: float
+    unlike: bool
     boards: int
     worst: float
     moved: float
@@ -107,7 +108,7 @@ def read(capture: Path) -> Record | None:
 def found_lamp(member: Member) -> FoundLamp:
     """A lamp of a record. Raises InputError."""
     triples = ("position", "position_deviation", "power", "power_deviation")
-    own = member.members((*triples, "share", "off", "boards"), _MORE_OF_LAMPS)
+    own = member.members((*triples, "share", "off", "unlike", "boards"), _MORE_OF_LAMPS)
     position, position_deviation, power, power_deviation = (
         tuple(each.number(-_FAR, _FAR, "mm, or W") for each in own[name].items(3)) for name in triples
     )
@@ -121,6 +122,7 @@ def found_lamp(member: Member) -> FoundLamp:
         power_deviation,
         own["share"].number(-_FAR, _FAR, "share of the light"),
         own["off"].number(0, _FAR, "share of a value"),
+        own["unlike"].value is True,
         len(boards),
         max(each["reprojection"].number(0, _FAR, "pixels") for each in boards),
         max(each["moved"].number(0, _FAR, "pixels") for each in boards),

@@ -26,6 +26,11 @@ def judge(lamps: Mapping[str, FoundLamp], said: list[str], wrong: list[str]) -> 
                 f"{where}: the board is lit otherwise than by one small lamp, {lamp.off:.1%} off (RMS); is it glossy "
                 "or shaded, or were other lamps on?"
             )
+        if lamp.unlike:
+            said.append(
+                f"{where}: the board is lit as by the other kind of lamp: a bulb that shines all around is type point, "
+                "an LED or a diffuser that shines forwards type rectangle; the wrong one is placed wrong, by tens of mm"
+            )
         if lamp.share > _POOR_SHARE:
             said.append(
                 f"{where}: {lamp.share:.0%} of the light on the board is not the lamp's; switch it off, or state it as "

@@ -15,7 +15,7 @@ from quadgraph.acquisition.cameras.lens import Lens, PinholeView, view_towards
 from quadgraph.acquisition.cameras.placed_body import PlacedBody
 from quadgraph.acquisition.capture.capture import NoiseModel
 from quadgraph.acquisition.capture.radiance import Radiance
-from quadgraph.acquisition.lighting.point_lamp import PointLamp
+from quadgraph.acquisition.lighting.near_lamp import NearLamp
 from quadgraph.acquisition.session import exr_writer, light_finding, resampling
 from quadgraph.acquisition.session.exposures import ShotContent
 from quadgraph.acquisition.session.locating import LocatedCamera
@@ -142,7 +142,7 @@ def record(
     found: dict[str, ShotContent],
     cameras: dict[str, LocatedCamera],
     views: dict[str, PinholeView],
-    lamps: dict[str, PointLamp],
+    lamps: dict[str, NearLamp],
 ) -> dict[str, Any]:
     """What was found, for `capture check` and whoever reads it; lengths mm, places pixels of the photograph."""
     photographs = []
@@ -180,7 +180,7 @@ def record(
 def _lamp(
     session: Session,
     name: str,
-    lamp: PointLamp,
+    lamp: NearLamp,
     found: dict[str, ShotContent],
     cameras: dict[str, LocatedCamera],
 ) -> dict[str, Any]:
@@ -194,7 +194,8 @@ def _lamp(
     numbers = ("position", "position_deviation", "power", "power_deviation", "ambient")
     return {
         **{each: np.asarray(getattr(lamp, each)).tolist() for each in numbers},
-        **{each: getattr(lamp, each) for each in ("share", "falloff", "off", "samples")},
+        **{each: getattr(lamp, each) for each in ("share", "falloff", "off", "samples", "unlike")},
+        **({} if lamp.aim is None else {"aim": lamp.aim.tolist()}),
         "reflectance": stated.reflectance,
         "reflectance_deviation": stated.deviation,
         "boards": boards,

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from quadgraph import core
-from quadgraph.acquisition.lighting import board_whites, point_lamp, projected_picture, projector_file
-from quadgraph.acquisition.lighting.point_lamp import PointLamp
+from quadgraph.acquisition.lighting import board_whites, near_lamp, projected_picture, projector_file
+from quadgraph.acquisition.lighting.near_lamp import NearLamp
 from quadgraph.acquisition.session import exr_writer
 from quadgraph.acquisition.session.exposures import Exposures
 from quadgraph.acquisition.session.light_statements import ProjectorStatement
@@ -24,7 +24,7 @@ from quadgraph.base.errors import InputError
 _DIGITS = 6  # significant ones of what is written
 
 
-def find(session: Session, exposures: Exposures, cameras: Mapping[str, LocatedCamera]) -> dict[str, PointLamp]:
+def find(session: Session, exposures: Exposures, cameras: Mapping[str, LocatedCamera]) -> dict[str, NearLamp]:
     """The lamps by their names. Raises InputError naming the lamp, or the photograph of the board."""
     lamps = {}
     for name, stated in session.lamps.items():
@@ -36,27 +36,36 @@ def find(session: Session, exposures: Exposures, cameras: Mapping[str, LocatedCa
             radiance = exposures.merged(shot)
             whites.append(board_whites.sample(where, session.board, radiance, camera.lens, camera.pose))
         where = f"{session.path}: {stated.path}"
-        lamps[name] = point_lamp.fit(where, whites, stated.reflectance, stated.deviation)
+        lamps[name] = near_lamp.fit(where, whites, stated.reflectance, stated.deviation, stated.side is not None)
     return lamps
 
 
-def lights(session: Session, lamps: Mapping[str, PointLamp], output: Path) -> dict[str, dict[str, Any]]:
+def lights(session: Session, lamps: Mapping[str, NearLamp], output: Path) -> dict[str, dict[str, Any]]:
     """All lights of a session as captures have them; what projectors show is written beside `output`.
 
     Raises InputError.
     """
-    found = {
-        name: {
-            "type": "point",
-            "position": [float(f"{each:.{_DIGITS}g}") for each in lamp.position],
-            "power": [float(f"{each:.{_DIGITS}g}") for each in lamp.power],
-        }
-        for name, lamp in lamps.items()
-    }
+    found = {name: _found(lamp, session.lamps[name].side) for name, lamp in lamps.items()}
     pictures = pictures_of(session, output)
     for (name, projector), picture in zip(session.projectors.items(), pictures, strict=True):
         found[name] = _projected(session, projector, picture)
     return {**session.lights, **found}
+
+
+def _found(lamp: NearLamp, side: float | None) -> dict[str, Any]:
+    """The light that a lamp is: a point, or a square of a side that looks along its axis."""
+    power = _rounded(lamp.power)
+    if lamp.aim is None or side is None:
+        return {"type": "point", "position": _rounded(lamp.position), "power": power}
+    axis = np.append(lamp.aim, 0.0) - lamp.position
+    u = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
+    v = np.cross(axis, u)  # u x v looks along the axis
+    edges = {name: _rounded(side * edge / np.linalg.norm(edge)) for name, edge in (("u", u), ("v", v))}
+    return {"type": "rectangle", "centre": _rounded(lamp.position), **edges, "power": power}
+
+
+def _rounded(values: np.ndarray) -> list[float]:
+    return [float(f"{each:.{_DIGITS}g}") for each in values]
 
 
 def pictures_of(session: Session, output: Path) -> list[Path]:

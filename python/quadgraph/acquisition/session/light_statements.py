@@ -12,7 +12,7 @@ from typing import Any
 
 from quadgraph.acquisition.capture import capture
 from quadgraph.acquisition.capture.strict_json import Member
-from quadgraph.acquisition.lighting.point_lamp import REFLECTANCE, REFLECTANCE_DEVIATION
+from quadgraph.acquisition.lighting.near_lamp import REFLECTANCE, REFLECTANCE_DEVIATION
 from quadgraph.acquisition.session.shots import LARGEST, Shot, frames_of
 from quadgraph.base.errors import InputError
 
@@ -21,14 +21,16 @@ MOST_BOARDS = 64  # photographs of the board under one lamp
 
 @dataclass(frozen=True)
 class LampStatement:
-    """A point light to be found. path: into the session; shots: of the board alone, under it alone; reflectance,
-    deviation: of the white paper.
+    """A light to be found. path: into the session; shots: of the board alone, under it alone; reflectance,
+    deviation: of the white paper; side: mm, of a small square that shines forwards, None of a point that shines all
+    around.
     """
 
     path: str
     shots: tuple[Shot, ...]
     reflectance: float
     deviation: float
+    side: float | None
 
 
 @dataclass(frozen=True)
@@ -85,8 +87,12 @@ def _projector(member: Member, folder: Path) -> ProjectorStatement:
 
 
 def _lamp(name: str, member: Member, folder: Path) -> LampStatement:
-    members = member.members(("type", "calibrate"), ("reflectance", "deviation"))
-    members["type"].one_of(("point",), "photographs of the board tell place and power of a point light alone")
+    members = member.members(("type", "calibrate"), ("reflectance", "deviation", "side"))
+    kind = members["type"].one_of(("point", "rectangle"), "the board tells of no other: state position and power")
+    side = members.get("side")
+    if (side is not None) != (kind == "rectangle"):
+        said = "has to be there with type rectangle, mm, of a square" if side is None else "is for type rectangle alone"
+        raise InputError(f"{member.file}: {member.path}.side: {said}")
     shots = []
     for each in members["calibrate"].items(MOST_BOARDS):
         frames = frames_of(each.members(("frames",), ())["frames"], folder)
@@ -97,4 +103,5 @@ def _lamp(name: str, member: Member, folder: Path) -> LampStatement:
         tuple(shots),
         reflectance.number(0.05, 1, "of the white paper") if reflectance else REFLECTANCE,
         deviation.number(0, 0.5, "standard deviation of `reflectance`") if deviation else REFLECTANCE_DEVIATION,
+        side.number(0, 200, "mm, of the square that shines; a larger one is not small", True) if side else None,
     )

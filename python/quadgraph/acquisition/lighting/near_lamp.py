@@ -1,8 +1,9 @@
 """Place and power of a lamp that is small and near, from how brightly it lights the white paper of the board.
 
 Paper of reflectance rho, taken as Lambertian, shows the radiance rho / pi (P z / (4 pi r^3) + a): P the power, r the
-distance to a lamp z above the paper, a the irradiance of other light. Photographs show that times a gain, which is the
-same for all; so what is found is power times gain.
+distance to a lamp z above the paper, a the irradiance of other light. A lamp that shines forwards, as a small
+Lambertian surface does, brings P c z / (pi r^3), c the cosine to its axis, which meets the paper somewhere. Photographs
+show that times a gain, which is the same for all; so what is found is power times gain.
 """
 
 from __future__ import annotations
@@ -23,14 +24,19 @@ _CLEAR_FALL, _LEAST_FOR_FALL = 2.0, 3  # deviation of the fall-off that is taken
 _MOST_UNSURE = 0.15  # of the distance, its deviation
 _DIRECTIONS, _DISTANCES = 160, np.geomspace(0.3, 20, 16)  # of the grid that the fit starts from, of the board's size
 _STARTS, _SHORT, _LONG = 3, 15, 150  # starts, and evaluations of each, and of the best one
+_AROUND = 10  # unknowns of a lamp that shines all around; one that shines forwards has two more
+_UNLIKE = 12.0  # of samples times the logarithm of what is left, by which one that shines forwards has to fit better
 _ROBUST = 2.5  # deviations, beyond which a sample counts for less
 
 
 @dataclass(frozen=True, eq=False)
-class PointLamp:
-    """position, position_deviation: (3,) mm; power, power_deviation: (3,) W times gain; ambient: (3,) W/mm^2 times
-    gain, of all other light; share: of it in the light on the board; falloff: c of a lens that shows exp(-c s^2) of the
-    light at the slope s; off: RMS of the samples, of their values; samples, photographs: how many.
+class NearLamp:
+    """A lamp that was found.
+
+    position, position_deviation: (3,) mm; power, power_deviation: (3,) W times gain; ambient: (3,) W/mm^2 times gain,
+    of all other light; share: of it in the light on the board; falloff: c of a lens that shows exp(-c s^2) of the light
+    at the slope s; off: RMS of the samples, of their values; samples, photographs: how many; aim: (2,) mm, where its
+    axis meets the board, None of one that shines all around; unlike: whether it is rather of the other kind.
     """
 
     position: np.ndarray
@@ -43,6 +49,8 @@ class PointLamp:
     off: float
     samples: int
     photographs: int
+    aim: np.ndarray | None
+    unlike: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,21 +75,24 @@ def fit(
     whites: Sequence[Whites],
     reflectance: float = REFLECTANCE,
     deviation: float = REFLECTANCE_DEVIATION,
-) -> PointLamp:
+    forwards: bool = False,
+) -> NearLamp:
     """The lamp that lights the samples of one photograph or more.
 
-    reflectance, deviation: of the white paper. Raises InputError, which begins with `where`, if they do not tell how
-    far away it is.
+    reflectance, deviation: of the white paper; forwards: as a small Lambertian surface, not all around. Raises
+    InputError, which begins with `where`, if they do not tell how far away it is.
     """
     samples = _together(whites)
-    starts = _starts(samples)
+    starts = [_turned(start, samples) if forwards else start for start in _starts(samples)]
     best = min((_solved(samples, start, _SHORT) for start in starts), key=lambda each: float(each.cost))
     found = _solved(samples, best.x)
     matt = _matt(samples, _place(found.x))
     if matt.sum() > len(matt) / 3 and not matt.all():
         samples = samples.only(matt)
         found = _solved(samples, found.x)
-    return _lamp(where, samples, found, reflectance, deviation)
+    other = _solved(samples, _turned(found.x, samples))
+    better = len(samples.places) * np.log(float(found.cost) / float(other.cost))
+    return _lamp(where, samples, found, reflectance, deviation, bool(better > (-_UNLIKE if forwards else _UNLIKE)))
 
 
 def _together(whites: Sequence[Whites]) -> _Samples:
@@ -124,6 +135,14 @@ def _starts(samples: _Samples) -> list[np.ndarray]:
     return starts
 
 
+def _turned(unknowns: np.ndarray, samples: _Samples) -> np.ndarray:
+    """The unknowns of the other kind of lamp: one that shines forwards, first to the middle of the board, or around."""
+    forwards = len(unknowns) == _AROUND
+    start = unknowns[:_AROUND].copy()
+    start[3:6] += -np.log(4) if forwards else np.log(4)
+    return np.concatenate([start, samples.places.mean(axis=0)[:2]]) if forwards else start
+
+
 def _misfit(shape: np.ndarray, even: np.ndarray, grey: np.ndarray) -> float:
     """What is left of the samples by the best power and the best other light, neither of them below nothing."""
     columns = np.stack([shape, even], axis=1)
@@ -135,10 +154,21 @@ def _place(unknowns: np.ndarray) -> np.ndarray:
     return np.array([unknowns[0], unknowns[1], np.exp(np.clip(unknowns[2], -20, 20))])
 
 
+def _shape(unknowns: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """(n,) irradiance of the lamp, of 1 W, at places (n, 3) of the paper, W/mm^2."""
+    lamp = _place(unknowns)
+    lit = _lit(places, lamp[None])[0]
+    if len(unknowns) == _AROUND:
+        return np.asarray(lit)
+    axis, ways = np.array([*unknowns[_AROUND:], 0.0]) - lamp, places - lamp
+    cosine = ways @ axis / np.linalg.norm(axis) / np.linalg.norm(ways, axis=1)
+    return np.asarray(4 * np.maximum(cosine, 0) * lit)
+
+
 def _off(unknowns: np.ndarray, samples: _Samples) -> np.ndarray:
     """By how many deviations each sample is off, as of white paper of reflectance 1; and the fall-off, of its own."""
-    lit = _lit(samples.places, _place(unknowns)[None])[0][:, None] * np.exp(np.clip(unknowns[3:6], -700, 700))
-    lit = lit + unknowns[7:]
+    lit = _shape(unknowns, samples.places)[:, None] * np.exp(np.clip(unknowns[3:6], -700, 700))
+    lit = lit + unknowns[7:_AROUND]
     fall = unknowns[6] if samples.photographs >= _LEAST_FOR_FALL else 0.0
     shown = lit / np.pi * np.exp(-fall * samples.slopes2)[:, None]
     off = (shown - samples.values) / samples.deviations
@@ -146,7 +176,8 @@ def _off(unknowns: np.ndarray, samples: _Samples) -> np.ndarray:
 
 
 def _solved(samples: _Samples, start: np.ndarray, most: int = _LONG) -> OptimizeResult:
-    scale = np.concatenate([[100.0, 100.0], np.ones(5), 0.1 * np.pi * np.abs(samples.values).mean(axis=0) + 1e-300])
+    other = 0.1 * np.pi * np.abs(samples.values).mean(axis=0) + 1e-300
+    scale = np.concatenate([[100.0, 100.0], np.ones(5), other, np.full(len(start) - _AROUND, 100.0)])
     return least_squares(_off, start, x_scale=scale, loss="soft_l1", f_scale=_ROBUST, args=(samples,), max_nfev=most)
 
 
@@ -158,7 +189,9 @@ def _matt(samples: _Samples, lamp: np.ndarray) -> np.ndarray:
     return np.asarray(cosine < np.cos(np.radians(_GLOSS)))
 
 
-def _lamp(where: str, samples: _Samples, found: OptimizeResult, reflectance: float, deviation: float) -> PointLamp:
+def _lamp(
+    where: str, samples: _Samples, found: OptimizeResult, reflectance: float, deviation: float, unlike: bool
+) -> NearLamp:
     """The lamp of a fit with its deviations. Raises InputError where the distance is not told."""
     place, power = _place(found.x), np.exp(found.x[3:6]) / reflectance
     off = _off(found.x, samples)[:-1].reshape(-1, 3)
@@ -171,18 +204,21 @@ def _lamp(where: str, samples: _Samples, found: OptimizeResult, reflectance: flo
     unsure = float(np.sqrt(way @ covariance[:3, :3] @ way)) if told else np.inf
     if unsure > _MOST_UNSURE * distance:
         raise InputError(_not_told(where, distance, unsure, way, covariance, samples))
+    other = found.x[7:_AROUND]
     relative = samples.deviations * off / np.maximum(samples.values, 1e-300)
-    return PointLamp(
+    return NearLamp(
         place,
         np.sqrt(np.diag(covariance)[:3]),
         power,
         power * np.sqrt(np.diag(covariance)[3:6] + (deviation / reflectance) ** 2),
-        found.x[7:] / reflectance,
-        float(np.median(found.x[7:] / (found.x[7:] + np.exp(found.x[3:6]) * _lit(middle[None], place[None])[0]))),
+        other / reflectance,
+        float(np.median(other / (other + np.exp(found.x[3:6]) * _shape(found.x, middle[None])))),
         float(found.x[6]),
         float(np.sqrt((relative**2).mean())),
         len(samples.places),
         samples.photographs,
+        found.x[_AROUND:] if len(found.x) > _AROUND else None,
+        unlike,
     )
 
 
