@@ -90,25 +90,64 @@ def boards(folder: Path, gain: float) -> list[dict[str, Any]]:
     return shots
 
 
-@pytest.mark.long
-def test_a_lamp_from_the_board_is_as_good_as_the_exact_one(tmp_path):
-    """Place and power of a point lamp by five photographs of the board; the power stands in for the camera's gain."""
-    twin_capture.bodies(tmp_path)
+@pytest.fixture(scope="module")
+def photographed(tmp_path_factory) -> tuple[Path, dict[str, Any], float]:
+    """A folder with four photographs of the body under the point lamp and with as many of the bare board, the session
+    of the former, and the gain.
+    """
+    folder = tmp_path_factory.mktemp("point")
+    twin_capture.bodies(folder)
     gain: list[float] = []
     poses = board_session.cameras()[::3]
     more = {"body": "potato.qgraph", "eta": twin_capture.ETA, "lights": {"lamp": POINT}, "size": 64}
     pose = {"pose": {"translate": PLACE.tolist()}}
-    path = board_session.write(tmp_path, poses, shows=body_of(tmp_path, gain, POINT), noise=NOISE, **more, **pose)
+    path = board_session.write(folder, poses, shows=body_of(folder, gain, POINT), noise=NOISE, **more, **pose)
     document = json.loads(path.read_text())
     del document["unit"]
-    lamp = {"type": "point", "calibrate": boards(tmp_path, gain[0]), "reflectance": board_photographs.PAPER}
-    for name, factor, light in (("exact", gain[0], POINT), ("found", 1.0, lamp)):
+    generator = np.random.default_rng(6)
+    for number, pose_of in enumerate(poses):
+        bare = board_photographs.photograph(Board(), board_photographs.LENS, pose_of)
+        picture = board_photographs.exposed(bare, 1.0, NOISE, generator, board_session.BLACK)
+        board_photographs.write_png(folder / f"empty-{number}.png", picture)
+    return folder, document, gain[0]
+
+
+@pytest.mark.long
+def test_a_lamp_from_the_board_is_as_good_as_the_exact_one(photographed):
+    """Place and power of a point lamp by five photographs of the board; the power stands in for the camera's gain."""
+    folder, document, gain = photographed
+    lamp = {"type": "point", "calibrate": boards(folder, gain), "reflectance": board_photographs.PAPER}
+    for name, factor, light in (("exact", gain, POINT), ("found", 1.0, lamp)):
         shots = [shot | {"gain": factor} for shot in document["photographs"]]
         stated = document | {"lights": {"lamp": light}, "photographs": shots}
-        (tmp_path / f"{name}.json").write_text(json.dumps(stated))
-    by_exact, by_found = (recovered(tmp_path, name) for name in ("exact", "found"))
+        (folder / f"{name}.json").write_text(json.dumps(stated))
+    by_exact, by_found = (recovered(folder, name) for name in ("exact", "found"))
     assert np.abs(by_exact).max() < 0.05
     assert np.sqrt((by_found**2).mean()) < 1.5 * np.sqrt((by_exact**2).mean())
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("beside", [0.0, 7.0])
+def test_masks_from_backgrounds_tell_a_body_that_lies_elsewhere(photographed, beside):
+    """beside: mm, by which the body lies elsewhere than the session states."""
+    folder, document, gain = photographed
+    shots = [
+        shot | {"gain": gain, "background": [{"file": f"empty-{number}.png", "exposure": 1.0}]}
+        for number, shot in enumerate(document["photographs"])
+    ]
+    pose = {"translate": (PLACE + np.array([beside, 0, 0])).tolist()}
+    (folder / "masked.json").write_text(json.dumps(document | {"photographs": shots, "pose": pose}))
+    made = [str(folder / f"masked-{end}") for end in ("capture.json", "wax.npz", "wax.json")]
+    assert main(["capture", "import", str(folder / "masked.json"), "-o", made[0]]) == 0
+    status = main(["acquire", made[0], "-o", made[1], "--json", made[2], "--device", "cpu"])
+    said = json.loads(Path(made[2]).read_text())
+    if beside:
+        assert status == 3
+        assert any(".mask: " in text or text.startswith("probably deformation: ") for text in said["findings"])
+        return
+    assert not said["findings"]
+    for key, true in twin_capture.TRUTH.items():
+        np.testing.assert_allclose(said["coefficients"][key], true, rtol=0.06)
 
 
 @pytest.mark.long
