@@ -1,18 +1,18 @@
 """`quadgraph capture`: a board to print, photographs on it as a capture, and whether a capture can be used.
 
-`board` writes a ChArUco board at its true size; `import` makes what `quadgraph acquire` reads of a session.json and its
-photographs; `check` tells of poses, exposures and what is covered (docs/capture.md).
+`board` writes a ChArUco board at its true size; `patterns` writes what a projector is to show, and `projector` finds
+where it stands from photographs of that on the board; `import` makes what `quadgraph acquire` reads of a session.json
+and its photographs; `check` tells of poses, exposures and what is covered (docs/capture.md).
 """
 
 from __future__ import annotations
 
 import argparse
-import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from quadgraph.base.arguments import up_to
 from quadgraph.base.errors import InputError
+from quadgraph.commands import board_arguments, projector_steps
 from quadgraph.commands.command_parser import CommandParser
 
 if TYPE_CHECKING:
@@ -24,37 +24,19 @@ _PAGES = ("a4", "letter", "a3")
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Register the subcommand and those below it."""
-    parser = subparsers.add_parser("capture", help="photographs for acquire: board, import, check", description=__doc__)
+    said = "photographs for acquire: board, projector, import, check"
+    parser = subparsers.add_parser("capture", help=said, description=__doc__)
     below = parser.add_subparsers(dest="step", metavar="STEP", required=True, parser_class=CommandParser)
     _add_board(below.add_parser("board", help="a board to print at its true size", description=run_board.__doc__))
+    projector_steps.add_parsers(below)
     _add_import(below.add_parser("import", help="photographs as a capture", description=run_import.__doc__))
     _add_check(below.add_parser("check", help="whether a capture can be used", description=run_check.__doc__))
-
-
-def _pair(text: str) -> tuple[int, int]:
-    """Argument type: two whole numbers, as 7x9."""
-    found = re.fullmatch(r"(\d{1,4})x(\d{1,4})", text)
-    if not found:
-        raise argparse.ArgumentTypeError(f"{text[:40]}: must be columns and rows, like 7x9")
-    return int(found[1]), int(found[2])
 
 
 def _add_board(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-o", "--output", metavar="OUT", type=Path, required=True, help=".pdf, .svg or .png to write")
     parser.add_argument("--page", choices=_PAGES, default="a4", help="paper (default: a4)")
-    parser.add_argument("--squares", metavar="CxR", type=_pair, default=(7, 9), help="columns and rows (default: 7x9)")
-    parser.add_argument("--square", metavar="MM", type=up_to(1000), default=25.0, help="side of a square (default: 25)")
-    parser.add_argument("--marker", metavar="MM", type=up_to(1000), default=18.0, help="side of a marker (default: 18)")
-    parser.add_argument(
-        "--dictionary", metavar="NAME", default="5x5_50", help="of the markers, as OpenCV has them (default: 5x5_50)"
-    )
-    parser.add_argument(
-        "--hollow",
-        metavar="CxR",
-        type=_pair,
-        default=(0, 0),
-        help="squares in the middle that are black, for the body, so that less light comes from the paper below it",
-    )
+    board_arguments.add(parser)
 
 
 def _add_import(parser: argparse.ArgumentParser) -> None:
@@ -72,7 +54,8 @@ def _add_check(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Run the step; 3 where a capture cannot be used."""
-    return {"board": run_board, "import": run_import, "check": run_check}[args.step](args)
+    steps = {"board": run_board, **projector_steps.STEPS, "import": run_import, "check": run_check}
+    return steps[args.step](args)
 
 
 def _console() -> Console:
@@ -84,12 +67,11 @@ def _console() -> Console:
 def run_board(args: argparse.Namespace) -> int:
     """Write a ChArUco board to print at its true size, with two rulers to check the print by."""
     from quadgraph.acquisition.board import drawing
-    from quadgraph.acquisition.board.board import Board
     from quadgraph.base import outputs
 
     outputs.check_outputs([args.output], [])
-    (columns, rows), hollow = args.squares, args.hollow
-    board = Board(columns, rows, args.square, args.marker, args.dictionary, hollow)
+    board = board_arguments.board_of(args)
+    (columns, rows), hollow = args.squares, board.hollow
     title = f"QuadGraph board {columns}x{rows}"
     drawing.write(args.output, drawing.page_of(board, args.page), title)
     stated = f'"squares": [{columns}, {rows}], "square": {board.square:g}, "marker": {board.marker:g}'
@@ -136,6 +118,9 @@ def run_import(args: argparse.Namespace) -> int:
 
 def import_lines(record: dict[str, Any]) -> list[str]:
     """What an import found, a line a lens and a photograph."""
+    from quadgraph.acquisition.capture.strict_json import Member
+    from quadgraph.acquisition.checking import import_record
+
     lines = []
     for lens in record["lenses"]:
         radial, tangential = lens["radial"], lens["tangential"]
@@ -149,6 +134,8 @@ def import_lines(record: dict[str, Any]) -> list[str]:
         if "corners" in each:
             said += f" mm; {len(each['corners'])} corners, {each['reprojection']:.2f} pixels off (RMS)"
         lines.append(said)
+    for name, lamp in record["lamps"].items():
+        lines.append(f"lamp {name}: {import_record.found_lamp(Member('', '', lamp)).line()}")
     return lines
 
 

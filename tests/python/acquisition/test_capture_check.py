@@ -100,6 +100,16 @@ def test_a_capture_that_is_fine_passes(fine, capsys):
     assert "photographs[3] (other-1.npz); 30 corners, 0.0" in printed
 
 
+def test_a_lamp_that_the_board_told_is_shown(fine, tmp_path, capsys):
+    folder = change(fine, tmp_path, lambda document, told, folder: told_lamp(told))
+    assert check(folder, "--page", str(folder / "check.html")) == 0
+    line = "260.0, 40.0, 260.0 mm, to 1.7 mm; power 9 / 8 / 7 W times gain, to 5.7%; other light 1.0% of that on the"
+    assert f"lamp lamp: {line}" in capsys.readouterr().out
+    assert line in (folder / "check.html").read_text()
+    assert not report(folder)["look_at"]
+    assert report(folder)["lamps"]["lamp"]["boards"] == 3
+
+
 def test_what_is_covered_is_what_cameras_see(fine):
     """Of a ball a camera at distance d sees a cap of (1 - r / d) / 2; six see what looks at one of them."""
     stated = capture.read(fine / "capture.json")
@@ -191,7 +201,46 @@ def one_side(document, told, folder):
     document["lights"]["lamp"]["position"] = document["cameras"]["lamp-3"]["eye"]
 
 
+def told_lamp(told, **more):
+    boards = [{"files": ["l.png"], "moved": 0.1, "reprojection": 0.05}] * more.pop("boards", 3)
+    numbers = {"position": [260, 40, 260], "position_deviation": [1, 1, 1], "power": [9, 8, 7]}
+    numbers |= {"power_deviation": [0.5, 0.4, 0.4], "share": 0.01, "off": 0.004}
+    lamp = numbers | {"unlike": False, "boards": boards}
+    told["lamps"] = {"lamp": lamp | more}
+
+
+def few_boards(document, told, folder):
+    told_lamp(told, boards=1)
+
+
+def shaded_board(document, told, folder):
+    told_lamp(told, off=0.07)
+
+
+def another_lamp_on(document, told, folder):
+    told_lamp(told, off=0.3)
+
+
+def another_kind(document, told, folder):
+    told_lamp(told, unlike=True)
+
+
+def room_light(document, told, folder):
+    told_lamp(told, share=0.4)
+
+
+def bumped_board(document, told, folder):
+    told_lamp(told)
+    told["lamps"]["lamp"]["boards"][0]["moved"] = 5.0
+
+
 SPOILT = [
+    (few_boards, 0, "lights.lamp: told by 1 of the board's photographs"),
+    (shaded_board, 0, "lights.lamp: the board is lit otherwise than by one small lamp, 7.0% off (RMS)"),
+    (another_lamp_on, 3, "lights.lamp: the board is lit otherwise than by one small lamp, 30.0% off (RMS)"),
+    (another_kind, 0, "lights.lamp: the board is lit as by the other kind of lamp"),
+    (room_light, 0, "lights.lamp: 40% of the light on the board is not the lamp's"),
+    (bumped_board, 3, "lights.lamp: the camera moved by 5.0 pixels in a photograph of the board"),
     (bent, 0, "photographs[2]: the board's corners are 0.90 pixels off (RMS), 0.07 in the others: it disagrees"),
     (wrong_pose, 3, "photographs[2]: the board's corners are 5.00 pixels off (RMS), 0.07 in the others: the pose is"),
     (bumped, 0, "photographs[4]: the camera moved by 1.2 pixels between its exposures"),
@@ -243,6 +292,7 @@ def test_a_capture_without_an_import_is_checked_too(fine, tmp_path, capsys):
     ("edit", "said"),
     [
         (lambda document, told, folder: told.pop("board"), "capture-import.json: board: is missing"),
+        (lambda document, told, folder: told_lamp(told, power=[1, 0, 1]), "lamps.lamp: found"),
         (lambda document, told, folder: told["photographs"][0].update(moved="x"), 'photographs[0].moved: found "x"'),
         (
             lambda document, told, folder: told["photographs"][0].update(corners=[[1, 2]]),

@@ -13,7 +13,9 @@ from scipy.ndimage import map_coordinates
 import board_photographs
 import board_session
 import foreign_files
+import lit_boards
 import twin_capture
+from quadgraph.acquisition.board.board import Board
 from quadgraph.acquisition.cameras.lens import Pose, view_towards
 from quadgraph.cli import main
 
@@ -28,14 +30,15 @@ LAMP: dict[str, Any] = {
     "v": [-30, -30, 80],
     "power": [1000, 900, 800],
 }
+POINT: dict[str, Any] = {"type": "point", "position": [210, 210, 200], "power": [2000, 1800, 1600]}
 RADIUS, DETAIL = 24.0, 360  # mm around the body, and pixels of the engine's pictures that are photographed
 NOISE = (0.003, 1e-3)  # read-out and shot noise of a value: 3% of white, as of a small sensor
 WHITE = 0.7  # of full scale, that the brightest of the body has at an exposure of 1
 
 
-def body_of(folder: Path, gain: list[float]) -> Any:
+def body_of(folder: Path, gain: list[float], light: dict[str, Any] = LAMP) -> Any:
     """What the engine sees of the finer body from each pose; `gain` gets what makes of its radiance a value."""
-    lamp = LAMP | {"centre": (np.array(LAMP["centre"]) - PLACE).tolist()}
+    lamp = light | {name: (np.array(light[name]) - PLACE).tolist() for name in ("centre", "position") if name in light}
 
     def at(pose: Pose) -> board_photographs.Body:
         view = view_towards(pose.eye - PLACE, np.zeros(3), RADIUS, DETAIL)
@@ -68,6 +71,83 @@ def recovered(folder: Path, name: str) -> np.ndarray:
     said = json.loads(Path(made[2]).read_text())
     assert not said["findings"]
     return np.array([np.array(said["coefficients"][key]) / twin_capture.TRUTH[key] - 1 for key in twin_capture.TRUTH])
+
+
+def boards(folder: Path, gain: float) -> list[dict[str, Any]]:
+    """Five photographs of the board alone under the point lamp, two exposures each."""
+    generator = np.random.default_rng(5)
+    light = lit_boards.lamp_light(POINT["position"], POINT["power"])
+    shots = []
+    for number, pose in enumerate(board_photographs.around([87.5, 112.5, 0.0], 330.0, 5, 50, 40.0)):
+        radiance = lit_boards.reflected(Board(), board_photographs.LENS, pose, light) * gain
+        frames = []
+        for step, exposure in enumerate((0.25 / radiance.max(), 0.9 / radiance.max())):
+            name = f"lamp-{number}-{step}.png"
+            picture = board_photographs.exposed(radiance, exposure, NOISE, generator, board_session.BLACK)
+            board_photographs.write_png(folder / name, picture)
+            frames.append({"file": name, "exposure": float(exposure)})
+        shots.append({"frames": frames})
+    return shots
+
+
+@pytest.fixture(scope="module")
+def photographed(tmp_path_factory) -> tuple[Path, dict[str, Any], float]:
+    """A folder with four photographs of the body under the point lamp and with as many of the bare board, the session
+    of the former, and the gain.
+    """
+    folder = tmp_path_factory.mktemp("point")
+    twin_capture.bodies(folder)
+    gain: list[float] = []
+    poses = board_session.cameras()[::3]
+    more = {"body": "potato.qgraph", "eta": twin_capture.ETA, "lights": {"lamp": POINT}, "size": 64}
+    pose = {"pose": {"translate": PLACE.tolist()}}
+    path = board_session.write(folder, poses, shows=body_of(folder, gain, POINT), noise=NOISE, **more, **pose)
+    document = json.loads(path.read_text())
+    del document["unit"]
+    generator = np.random.default_rng(6)
+    for number, pose_of in enumerate(poses):
+        bare = board_photographs.photograph(Board(), board_photographs.LENS, pose_of)
+        picture = board_photographs.exposed(bare, 1.0, NOISE, generator, board_session.BLACK)
+        board_photographs.write_png(folder / f"empty-{number}.png", picture)
+    return folder, document, gain[0]
+
+
+@pytest.mark.long
+def test_a_lamp_from_the_board_is_as_good_as_the_exact_one(photographed):
+    """Place and power of a point lamp by five photographs of the board; the power stands in for the camera's gain."""
+    folder, document, gain = photographed
+    lamp = {"type": "point", "calibrate": boards(folder, gain), "reflectance": board_photographs.PAPER}
+    for name, factor, light in (("exact", gain, POINT), ("found", 1.0, lamp)):
+        shots = [shot | {"gain": factor} for shot in document["photographs"]]
+        stated = document | {"lights": {"lamp": light}, "photographs": shots}
+        (folder / f"{name}.json").write_text(json.dumps(stated))
+    by_exact, by_found = (recovered(folder, name) for name in ("exact", "found"))
+    assert np.abs(by_exact).max() < 0.05
+    assert np.sqrt((by_found**2).mean()) < 1.5 * np.sqrt((by_exact**2).mean())
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("beside", [0.0, 7.0])
+def test_masks_from_backgrounds_tell_a_body_that_lies_elsewhere(photographed, beside):
+    """beside: mm, by which the body lies elsewhere than the session states."""
+    folder, document, gain = photographed
+    shots = [
+        shot | {"gain": gain, "background": [{"file": f"empty-{number}.png", "exposure": 1.0}]}
+        for number, shot in enumerate(document["photographs"])
+    ]
+    pose = {"translate": (PLACE + np.array([beside, 0, 0])).tolist()}
+    (folder / "masked.json").write_text(json.dumps(document | {"photographs": shots, "pose": pose}))
+    made = [str(folder / f"masked-{end}") for end in ("capture.json", "wax.npz", "wax.json")]
+    assert main(["capture", "import", str(folder / "masked.json"), "-o", made[0]]) == 0
+    status = main(["acquire", made[0], "-o", made[1], "--json", made[2], "--device", "cpu"])
+    said = json.loads(Path(made[2]).read_text())
+    if beside:
+        assert status == 3
+        assert any(".mask: " in text or text.startswith("probably deformation: ") for text in said["findings"])
+        return
+    assert not said["findings"]
+    for key, true in twin_capture.TRUTH.items():
+        np.testing.assert_allclose(said["coefficients"][key], true, rtol=0.06)
 
 
 @pytest.mark.long

@@ -19,8 +19,8 @@ from quadgraph import core
 from quadgraph.acquisition.board.board import Board
 from quadgraph.acquisition.cameras.lens import PinholeView, Pose, view_towards
 from quadgraph.acquisition.capture import capture, photographs
+from quadgraph.acquisition.capture.radiance import Radiance
 from quadgraph.acquisition.session import exposures, locating, resampling, session_file
-from quadgraph.acquisition.session.brackets import Radiance
 from quadgraph.cli import main
 
 pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")

@@ -16,7 +16,15 @@ from quadgraph.base.errors import InputError
 LEAST_PHOTOGRAPHS = 4  # of which a lens is found
 _FEW = 15  # photographs, below which k3 is taken for 0
 _FAR_OFF, _LEAST_OFF = 5.0, 0.03  # medians of a photograph's errors, and pixels, beyond which a corner is left out
-_FLAT = 10.0  # degrees between the ways that photographs look, below which focal length and distance cannot be told
+FLAT = 10.0  # degrees between the ways that photographs look, below which focal length and distance cannot be told
+
+
+class AlikeError(Exception):
+    """All photographs look the same way, to so many degrees."""
+
+    def __init__(self, degrees: float) -> None:
+        super().__init__()
+        self.degrees = degrees
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,8 +53,21 @@ def calibrate(board: Board, found: Mapping[str, Corners], size: tuple[int, int])
             f"{len(found)} photographs show the board, allowed are {LEAST_PHOTOGRAPHS} or more to find the lens by; "
             'take more from other sides, or state a calibrated lens ("cameras": "lens.yml")'
         )
+    try:
+        return fitted(board, found, size)
+    except AlikeError as error:
+        raise InputError(
+            f"all photographs look the same way, to {error.degrees:.1f} degrees, allowed are more than {FLAT:g}: focal "
+            "length and distance cannot be told apart; photograph from other sides, or state a lens in `cameras`"
+        ) from None
+
+
+def fitted(board: Board, found: Mapping[str, Corners], size: tuple[int, int]) -> tuple[Lens, dict[str, Located]]:
+    """As `calibrate`, of any number of photographs. Raises AlikeError where all look the same way, and InputError."""
     lens, located = _least_squares(board, found, size)
-    _check_ways(list(located.values()))
+    widest = _widest(list(located.values()))
+    if widest < FLAT:
+        raise AlikeError(widest)
     kept = {name: _without_outliers(each) for name, each in located.items()}
     if any(each.left_out for each in kept.values()):
         lens, again = _least_squares(board, {name: each.corners for name, each in kept.items()}, size)
@@ -96,14 +117,10 @@ def _without_outliers(located: Located) -> Located:
     return Located(located.pose, corners, located.off[kept], located.left_out + int((~kept).sum()))
 
 
-def _check_ways(located: Sequence[Located]) -> None:
+def _widest(located: Sequence[Located]) -> float:
+    """Degrees between the ways of the two photographs that look most differently."""
     ways = np.array([each.pose.rotation[2] for each in located])
-    widest = float(np.degrees(np.arccos(np.clip(ways @ ways.T, -1, 1))).max())
-    if widest < _FLAT:
-        raise InputError(
-            f"all photographs look the same way, to {widest:.1f} degrees, allowed are more than {_FLAT:g}: focal "
-            "length and distance cannot be told apart; photograph from other sides, or state a lens in `cameras`"
-        )
+    return float(np.degrees(np.arccos(np.clip(ways @ ways.T, -1, 1))).max())
 
 
 def locate(board: Board, lens: Lens, corners: Corners) -> Located:

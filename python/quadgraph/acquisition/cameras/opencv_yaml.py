@@ -49,9 +49,14 @@ def read(path: Path) -> ForeignCameras:
     return ForeignCameras(path, {}, {}, lens)
 
 
+def numbers(path: Path, field: str) -> list[float]:
+    """Those of a matrix of this name row by row, none where it is not there. Raises InputError."""
+    return _matrix(path, content(path).decode("utf-8", "replace"), field) or []
+
+
 def _matrix(path: Path, text: str, field: str) -> list[float] | None:
     """The numbers of a matrix row by row, None where there is none of its names."""
-    for name in _NAMES[field]:
+    for name in _NAMES.get(field, (field,)):
         if found := re.search(_MATRIX.format(name=name), text, re.MULTILINE):
             words = [word.strip() for word in found[3].replace("\n", " ").split(",") if word.strip()]
             if int(found[1]) * int(found[2]) != len(words):

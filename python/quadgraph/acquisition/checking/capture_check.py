@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -16,8 +16,8 @@ from quadgraph.acquisition.cameras.placed_body import FLAT, PlacedBody, of_captu
 from quadgraph.acquisition.capture import photographs
 from quadgraph.acquisition.capture.capture import Capture
 from quadgraph.acquisition.capture.photographs import Measured
-from quadgraph.acquisition.checking import import_record
-from quadgraph.acquisition.checking.import_record import Imported, Record
+from quadgraph.acquisition.checking import import_record, lamp_check
+from quadgraph.acquisition.checking.import_record import FoundLamp, Imported, Record
 
 SAMPLES = 4000  # places of the surface
 _LEAST_BODY = 16  # pixels, as acquire wants them
@@ -103,6 +103,7 @@ class Checked:
                 parts.append(f"{len(imported.corners)} corners, {imported.reprojection:.2f} pixels off")
             parts.append(f"body {each.body:.0%} of it, of which {each.counts:.0%} counts, {each.signal:.0f} deviations")
             lines.append(f"{'; '.join(parts)}: {each.verdict}")
+        lines += [f"lamp {name}: {lamp.line()}" for name, lamp in self.lamps().items()]
         lines.append(f"scale: {self.scale()}")
         lines.append(
             f"surface: {self.seen:.0%} seen, {self.twice:.0%} twice or more, {self.used:.0%} seen and lit; cameras up "
@@ -111,6 +112,10 @@ class Checked:
         lines += [f"look at it: {text}" for text in self.doubts()]
         lines += [f"unusable: {text}" for text in self.reasons()]
         return lines if self.unusable else [*lines, "can be used: quadgraph acquire"]
+
+    def lamps(self) -> Mapping[str, FoundLamp]:
+        """Those that photographs of the board told, by their names."""
+        return self.record.lamps if self.record else {}
 
     def scale(self) -> str:
         """What the lengths rest on."""
@@ -138,7 +143,8 @@ class Checked:
         ]
         surface = {"seen": self.seen, "twice": self.twice, "seen_and_lit": self.used}
         whole = {"unusable": self.reasons(), "look_at": self.doubts(), "scale": self.scale()}
-        return {**whole, "surface": surface, "widest": self.widest, "photographs": each}
+        lamps = {name: asdict(lamp) for name, lamp in self.lamps().items()}
+        return {**whole, "lamps": lamps, "surface": surface, "widest": self.widest, "photographs": each}
 
 
 def record_of(path: Path) -> Path:
@@ -175,6 +181,7 @@ def check(capture: Capture) -> Checked:
         [],
     )
     _judge_whole(checked, places)
+    lamp_check.judge(checked.lamps(), checked.said, checked.wrong)
     return checked
 
 

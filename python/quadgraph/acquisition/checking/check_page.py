@@ -69,6 +69,7 @@ def page(checked: Checked) -> str:
     body.append(f'<p class="soft">{len(checked.judged)} photographs of {html.escape(checked.capture.body.name)}</p>')
     body += [_tiles(checked), *_said(checked)]
     body += ["<h2>Where cameras and lights are</h2>", '<div class="row">', *plan_drawings.plans(checked), "</div>"]
+    body += [f"<p><b>{html.escape(name)}</b>: {html.escape(lamp.line())}</p>" for name, lamp in checked.lamps().items()]
     body += ["<h2>What of the surface is covered</h2>", _covered(checked)]
     body += [
         "<h2>Photographs</h2>",

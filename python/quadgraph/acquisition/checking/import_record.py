@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +18,7 @@ from quadgraph.base.regular_file import read_bytes
 _FAR = 1e9
 _MOST_CORNERS = 10_000
 _MEMBERS = ("photograph", "files", "exposures", "exposure_ratios", "moved", "samples", "size", "eye")
+_MORE_OF_LAMPS = ("ambient", "falloff", "samples", "reflectance", "reflectance_deviation", "aim")
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,11 +35,43 @@ class Imported:
 
 
 @dataclass(frozen=True)
+class FoundLamp:
+    """As `near_lamp.NearLamp` has it; boards: photographs of the board; worst: the largest RMS distance of its
+    corners in one of them, pixels; moved: the farthest that a camera moved between exposures, pixels.
+    """
+
+    position: tuple[float, ...]
+    position_deviation: tuple[float, ...]
+    power: tuple[float, ...]
+    power_deviation: tuple[float, ...]
+    share: float
+    off: float
+    unlike: bool
+    boards: int
+    worst: float
+    moved: float
+
+    def line(self) -> str:
+        """Place and power with their deviations."""
+        place = ", ".join(f"{each:.1f}" for each in self.position)
+        unsure = float(np.linalg.norm(self.position_deviation))
+        power = " / ".join(f"{each:.4g}" for each in self.power)
+        relative = max(deviation / each for deviation, each in zip(self.power_deviation, self.power, strict=True))
+        return (
+            f"{place} mm, to {unsure:.1f} mm; power {power} W times gain, to {relative:.1%}; other light "
+            f"{self.share:.1%} of that on the board; {self.boards} photographs of it, {self.off:.1%} off"
+        )
+
+
+@dataclass(frozen=True)
 class Record:
-    """printed: what the two rulers measure, mm, None without a board; photographs: by the names of their cameras."""
+    """printed: what the two rulers measure, mm, None without a board; photographs: by the names of their cameras;
+    lamps: those that the board told, by their names.
+    """
 
     printed: tuple[float, float] | None
     photographs: Mapping[str, Imported]
+    lamps: Mapping[str, FoundLamp] = field(default_factory=dict)
 
 
 def place_of(path: Path) -> Path:
@@ -57,7 +90,7 @@ def read(capture: Path) -> Record | None:
         raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
     except InputError as error:
         raise InputError(f"{path}: {error}; import again, or remove it") from None
-    members = document.members(("quadgraph_import", "noise", "lenses", "board", "photographs"), ())
+    members = document.members(("quadgraph_import", "noise", "lenses", "board", "photographs"), ("lamps",))
     members["quadgraph_import"].whole(1, 1, "the version of this format")
     printed = None
     if members["board"].value is not None:
@@ -68,7 +101,32 @@ def read(capture: Path) -> Record | None:
     for each in members["photographs"].items(MOST_PHOTOGRAPHS):
         own = each.members(_MEMBERS, ("reprojection", "left_out", "corners"))
         found[own["photograph"].text("its camera")] = _imported(own)
-    return Record(printed, found)
+    lamps = members["lamps"].value and members["lamps"].named() if "lamps" in members else {}
+    return Record(printed, found, {name: found_lamp(each) for name, each in (lamps or {}).items()})
+
+
+def found_lamp(member: Member) -> FoundLamp:
+    """A lamp of a record. Raises InputError."""
+    triples = ("position", "position_deviation", "power", "power_deviation")
+    own = member.members((*triples, "share", "off", "unlike", "boards"), _MORE_OF_LAMPS)
+    position, position_deviation, power, power_deviation = (
+        tuple(each.number(-_FAR, _FAR, "mm, or W") for each in own[name].items(3)) for name in triples
+    )
+    boards = [each.members(("files", "moved", "reprojection"), ()) for each in own["boards"].items(MOST_PHOTOGRAPHS)]
+    if any(len(each) != 3 for each in (position, position_deviation, power, power_deviation)) or min(power) <= 0:
+        member.wrong("allowed are three numbers each of place and power, powers above 0")
+    return FoundLamp(
+        position,
+        position_deviation,
+        power,
+        power_deviation,
+        own["share"].number(-_FAR, _FAR, "share of the light"),
+        own["off"].number(0, _FAR, "share of a value"),
+        own["unlike"].value is True,
+        len(boards),
+        max(each["reprojection"].number(0, _FAR, "pixels") for each in boards),
+        max(each["moved"].number(0, _FAR, "pixels") for each in boards),
+    )
 
 
 def _imported(own: Mapping[str, Member]) -> Imported:

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import nnls
 
 from quadgraph.acquisition.capture.capture import NoiseModel
+from quadgraph.acquisition.capture.radiance import Radiance
 from quadgraph.acquisition.session.frames import Frame
 
 _ROUNDS = 2  # of weights by the radiance that the last ones gave
@@ -21,15 +21,6 @@ _BINS, _LEAST_IN_BIN = 24, 200
 _MAD = 1.4826  # of normal noise, standard deviation over median absolute deviation
 _BRIGHT = 20.0  # standard deviations, from which on pixels tell the ratio of two exposures
 _ROWS = 256  # merged at a time
-
-
-@dataclass(frozen=True, eq=False)
-class Radiance:
-    """values, variances: (h, w, 3) float32, value over exposure; usable: (h, w, 3), not saturated in all exposures."""
-
-    values: np.ndarray
-    variances: np.ndarray
-    usable: np.ndarray
 
 
 def merge(

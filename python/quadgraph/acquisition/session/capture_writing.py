@@ -14,11 +14,13 @@ from quadgraph.acquisition.board.board import RULER_MM
 from quadgraph.acquisition.cameras.lens import Lens, PinholeView, view_towards
 from quadgraph.acquisition.cameras.placed_body import PlacedBody
 from quadgraph.acquisition.capture.capture import NoiseModel
-from quadgraph.acquisition.session import exr_writer, resampling
-from quadgraph.acquisition.session.brackets import Radiance
+from quadgraph.acquisition.capture.radiance import Radiance
+from quadgraph.acquisition.lighting.near_lamp import NearLamp
+from quadgraph.acquisition.session import exr_writer, light_finding, resampling
 from quadgraph.acquisition.session.exposures import ShotContent
 from quadgraph.acquisition.session.locating import LocatedCamera
-from quadgraph.acquisition.session.session_file import Session, Shot
+from quadgraph.acquisition.session.session_file import Session
+from quadgraph.acquisition.session.shots import Shot
 from quadgraph.base import image_file
 from quadgraph.base.errors import InputError
 
@@ -41,7 +43,9 @@ def record_of(path: Path) -> Path:
 def outputs(session: Session, output: Path) -> list[Path]:
     """All files that an import writes."""
     names = [f"{output.stem}-{name_of(number)}" for number in range(len(session.shots))]
-    return [output, record_of(output), *(output.with_name(name + end) for name in names for end in _ENDS.values())]
+    pictures = light_finding.pictures_of(session, output)
+    pictures += [output.with_name(name + end) for name in names for end in _ENDS.values()]
+    return [output, record_of(output), *pictures]
 
 
 def view_of(session: Session, shot: Shot, camera: LocatedCamera, body: PlacedBody) -> PinholeView:
@@ -138,6 +142,7 @@ def record(
     found: dict[str, ShotContent],
     cameras: dict[str, LocatedCamera],
     views: dict[str, PinholeView],
+    lamps: dict[str, NearLamp],
 ) -> dict[str, Any]:
     """What was found, for `capture check` and whoever reads it; lengths mm, places pixels of the photograph."""
     photographs = []
@@ -167,7 +172,33 @@ def record(
         "board": None
         if board is None
         else {"size": (board.size * np.array(board.printed) / RULER_MM).tolist(), "printed": list(board.printed)},
+        "lamps": {name: _lamp(session, name, lamp, found, cameras) for name, lamp in lamps.items()},
         "photographs": photographs,
+    }
+
+
+def _lamp(
+    session: Session,
+    name: str,
+    lamp: NearLamp,
+    found: dict[str, ShotContent],
+    cameras: dict[str, LocatedCamera],
+) -> dict[str, Any]:
+    """A lamp with standard deviations, and the photographs of the board that told it."""
+    stated = session.lamps[name]
+    boards = []
+    for shot in stated.shots:
+        seen = cameras[shot.path].board
+        entry = {"files": [frame.file.name for frame in shot.frames], "moved": found[shot.path].moved}
+        boards.append(entry | {"reprojection": seen.rms if seen else None})
+    numbers = ("position", "position_deviation", "power", "power_deviation", "ambient")
+    return {
+        **{each: np.asarray(getattr(lamp, each)).tolist() for each in numbers},
+        **{each: getattr(lamp, each) for each in ("share", "falloff", "off", "samples", "unlike")},
+        **({} if lamp.aim is None else {"aim": lamp.aim.tolist()}),
+        "reflectance": stated.reflectance,
+        "reflectance_deviation": stated.deviation,
+        "boards": boards,
     }
 
 

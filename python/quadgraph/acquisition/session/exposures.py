@@ -10,10 +10,11 @@ from quadgraph.acquisition.board import corners
 from quadgraph.acquisition.board.board import Board
 from quadgraph.acquisition.board.corners import Corners
 from quadgraph.acquisition.capture.capture import NoiseModel
+from quadgraph.acquisition.capture.radiance import Radiance
 from quadgraph.acquisition.session import brackets, frames
-from quadgraph.acquisition.session.brackets import Radiance
 from quadgraph.acquisition.session.frames import Frame
-from quadgraph.acquisition.session.session_file import Session, Shot
+from quadgraph.acquisition.session.session_file import Session
+from quadgraph.acquisition.session.shots import Shot
 from quadgraph.base.errors import InputError
 
 _LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)

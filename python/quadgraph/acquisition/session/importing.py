@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from quadgraph.acquisition.cameras.placed_body import PlacedBody, surface
 from quadgraph.acquisition.capture import capture
-from quadgraph.acquisition.session import capture_writing, locating
+from quadgraph.acquisition.session import background_masks, capture_writing, light_finding, locating
 from quadgraph.acquisition.session.exposures import Exposures
 from quadgraph.acquisition.session.session_file import Session
 from quadgraph.base import atomic_file
@@ -27,11 +28,13 @@ def import_session(
     noise = exposures.noise
     tell(f"noise of a value v, where 1 is full scale: variance {noise.read_out:.3g}^2 + {noise.shot:.3g} v")
     found = {}
-    for number, shot in enumerate(session.shots):
+    for number, shot in enumerate(session.all_shots()):
         found[shot.path] = exposures.content(shot)
-        advance(0.6 * (number + 1) / len(session.shots))
+        advance(0.6 * (number + 1) / len(session.all_shots()))
     seen = {path: each.corners for path, each in found.items()}
     cameras = locating.locate(session, {path: each.size for path, each in found.items()}, seen)
+    lamps = light_finding.find(session, exposures, cameras)
+    session = replace(session, lights=light_finding.lights(session, lamps, output))
     views, entries = {}, []
     for number, shot in enumerate(session.shots):
         name = capture_writing.name_of(number)
@@ -39,12 +42,14 @@ def import_session(
         views[name] = capture_writing.view_of(session, shot, camera, body)
         radiance = exposures.merged(shot)
         kept = capture_writing.kept_of(session, shot, radiance)
+        if shot.background:
+            kept = background_masks.kept_of(session, shot, radiance, exposures.merged(shot.emptied()))
         picture = capture_writing.picture_of(session, shot, radiance, kept, camera, views[name], body)
         entries.append(capture_writing.write_photograph(shot, picture, output, name))
         advance(0.6 + 0.4 * (number + 1) / len(session.shots))
     atomic_file.write_json(output, capture_writing.document(session, output, views, entries))
     capture.read(output)
-    record = capture_writing.record(session, noise, found, cameras, views)
+    record = capture_writing.record(session, noise, found, cameras, views, lamps)
     atomic_file.write_json(capture_writing.record_of(output), record)
     return record
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,7 +16,8 @@ from quadgraph.acquisition.cameras import colmap, nerf_transforms, opencv_yaml
 from quadgraph.acquisition.cameras.foreign import ForeignCameras
 from quadgraph.acquisition.cameras.lens import Lens, Pose, project
 from quadgraph.acquisition.cameras.rigid_placement import Placement
-from quadgraph.acquisition.session.session_file import Session, Shot
+from quadgraph.acquisition.session.session_file import Session
+from quadgraph.acquisition.session.shots import Shot
 from quadgraph.base.errors import InputError
 from quadgraph.base.message import meant
 
@@ -65,7 +66,16 @@ def locate(
         raise InputError(
             f"{session.path}: board: is missing, {session.cameras} holds a lens without poses; add the board"
         )
-    for shot in session.shots:
+    _check_corners(session, session.all_shots(), found)
+    if foreign is not None and foreign.lens is not None:
+        lens = _of_size(session, foreign.lens, sizes)
+        located = {name: calibration.locate(board, lens, each) for name, each in found.items()}
+        return {name: LocatedCamera(lens, each.pose, each) for name, each in located.items()}
+    return _by_board(session, board, sizes, found)
+
+
+def _check_corners(session: Session, shots: Iterable[Shot], found: Mapping[str, Corners]) -> None:
+    for shot in shots:
         count = len(found[shot.path].numbers)
         if count < corners.LEAST:
             raise InputError(
@@ -73,11 +83,6 @@ def locate(
                 f"are {corners.LEAST} or more: is it the board that `board` says, in focus, not too dark, all but what "
                 "the body hides in the picture?"
             )
-    if foreign is not None and foreign.lens is not None:
-        lens = _of_size(session, foreign.lens, sizes)
-        located = {name: calibration.locate(board, lens, each) for name, each in found.items()}
-        return {name: LocatedCamera(lens, each.pose, each) for name, each in located.items()}
-    return _by_board(session, board, sizes, found)
 
 
 def _by_board(
@@ -122,7 +127,7 @@ def _by_program(
         seen = {
             path: calibration.locate(session.board, foreign.lenses[names[path]], each)
             for path, each in found.items()
-            if len(each.numbers) >= corners.LEAST
+            if path in names and len(each.numbers) >= corners.LEAST
         }
     poses = {path: foreign.poses[name] for path, name in names.items()}
     world = session.world or _aligned(session, foreign, poses, seen)
@@ -130,6 +135,26 @@ def _by_program(
     for path, name in names.items():
         lens, pose = foreign.lenses[name], poses[path].moved(world.scale, world.rotation, world.translation)
         cameras[path] = LocatedCamera(lens, pose, _judged(session.board, lens, pose, seen.get(path)))
+    return cameras | _of_lamps(session, foreign, sizes, found)
+
+
+def _of_lamps(
+    session: Session, foreign: ForeignCameras, sizes: Mapping[str, tuple[int, int]], found: Mapping[str, Corners]
+) -> dict[str, LocatedCamera]:
+    """Photographs of the board alone, which the other program need not know: poses by the board, its lenses."""
+    lenses = {(lens.width, lens.height): lens for lens in foreign.lenses.values()}
+    cameras = {}
+    for shot in (shot for lamp in session.lamps.values() for shot in lamp.shots):
+        assert session.board is not None
+        _check_corners(session, [shot], found)
+        lens = lenses.get(sizes[shot.path])
+        if lens is None:
+            raise InputError(
+                f"{session.path}: {shot.path}: found {' x '.join(map(str, sizes[shot.path]))} pixels, allowed are "
+                f"those of a lens of {foreign.source}: " + ", ".join(f"{wide} x {high}" for wide, high in lenses)
+            )
+        located = calibration.locate(session.board, lens, found[shot.path])
+        cameras[shot.path] = LocatedCamera(lens, located.pose, located)
     return cameras
 
 

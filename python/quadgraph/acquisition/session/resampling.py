@@ -9,7 +9,7 @@ import numpy as np
 from scipy import sparse
 
 from quadgraph.acquisition.cameras.lens import Lens, PinholeView, Pose
-from quadgraph.acquisition.session.brackets import Radiance
+from quadgraph.acquisition.capture.radiance import Radiance
 
 _MOST_SAMPLES = 32  # along a side of a pixel
 _AT_ONCE = 1 << 20  # rays

@@ -14,36 +14,19 @@ from quadgraph.acquisition.cameras.rigid_placement import Placement
 from quadgraph.acquisition.capture import capture
 from quadgraph.acquisition.capture.capture import NoiseModel
 from quadgraph.acquisition.capture.strict_json import Member
+from quadgraph.acquisition.session import light_statements
+from quadgraph.acquisition.session.light_statements import LampStatement, ProjectorStatement
+from quadgraph.acquisition.session.shots import Shot, read_shot
 from quadgraph.base import json_text
 from quadgraph.base.errors import InputError
 from quadgraph.base.regular_file import read_bytes
 from quadgraph.base.units import UNITS_MM
 
 VERSION = 1
-MOST_FRAMES, MOST_BLACK = 16, 64
+MOST_BLACK = 64
 DEFAULT_SIZE = 320  # pixels of the square pictures of a capture
 _FAR_MM = 1e6
 _LARGEST = 1e15
-
-
-@dataclass(frozen=True)
-class FrameFile:
-    """One exposure: file, and what its values are times the radiance; None where the file says it."""
-
-    path: str
-    file: Path
-    exposure: float | None
-
-
-@dataclass(frozen=True)
-class Shot:
-    """One photograph of the session: exposures from one place under the same lights. gain: as captures have it."""
-
-    path: str
-    frames: tuple[FrameFile, ...]
-    lights: tuple[str, ...]
-    gain: float | str
-    mask: Path | None
 
 
 @dataclass(frozen=True)
@@ -63,17 +46,26 @@ class Session:
     polarised: bool
     placement: Placement
     lights: Mapping[str, dict[str, Any]]
+    lamps: Mapping[str, LampStatement]
+    projectors: Mapping[str, ProjectorStatement]
     noise: NoiseModel | None
     saturation: float | None
     black: tuple[Path, ...]
     size: int
     shots: tuple[Shot, ...]
 
+    def all_shots(self) -> tuple[Shot, ...]:
+        """Those of the body, and those of the board that tell of lamps."""
+        return self.shots + tuple(shot for lamp in self.lamps.values() for shot in lamp.shots)
+
     def files(self) -> list[Path]:
         """All files that it names, and its own."""
         found = [self.path, self.body, *self.black, *([self.cameras] if self.cameras else [])]
-        for shot in self.shots:
-            found += [*(frame.file for frame in shot.frames), *([shot.mask] if shot.mask else [])]
+        for shot in self.all_shots():
+            found += [frame.file for frame in (*shot.frames, *shot.background)]
+            found += [shot.mask] if shot.mask else []
+        for projector in self.projectors.values():
+            found += [projector.calibrated, projector.shown]
         return found
 
 
@@ -106,7 +98,8 @@ def _session(path: Path, document: Member) -> Session:
     polarised = members.get("polarised")
     if polarised is not None and not isinstance(polarised.value, bool):
         polarised.wrong("allowed are true and false")
-    lights = {name: capture.light(each, folder) for name, each in members["lights"].named().items()}
+    lights = light_statements.read(members["lights"], folder, "board" in members)
+    names = list(members["lights"].named())
     unit, size, saturation = members.get("unit"), members.get("size"), members.get("saturation")
     return Session(
         path,
@@ -118,7 +111,9 @@ def _session(path: Path, document: Member) -> Session:
         members["eta"].number(1, 3, "index of refraction inside over outside"),
         bool(polarised and polarised.value),
         _placement(members["pose"], False) if "pose" in members else Placement(1.0, (0, 0, 1), 0.0, np.zeros(3)),
-        lights,
+        lights.known,
+        lights.lamps,
+        lights.projectors,
         capture.noise_of(members["noise"]) if "noise" in members else None,
         saturation.number(0, _LARGEST, "a value; 1 is the full scale of a .png and a raw file", True)
         if saturation
@@ -127,7 +122,7 @@ def _session(path: Path, document: Member) -> Session:
         if black
         else (),
         size.whole(8, capture.MOST_SIDE, "pixels of the capture's pictures") if size else DEFAULT_SIZE,
-        tuple(_shot(each, folder, lights) for each in members["photographs"].items(capture.MOST_PHOTOGRAPHS)),
+        tuple(read_shot(each, folder, names) for each in members["photographs"].items(capture.MOST_PHOTOGRAPHS)),
     )
 
 
@@ -193,28 +188,3 @@ def _triple(member: Member, what: str) -> list[float]:
     if len(found) != 3:
         member.wrong(f"allowed are three numbers ({what})")
     return found
-
-
-def _shot(member: Member, folder: Path, lights: Mapping[str, Any]) -> Shot:
-    members = member.members(("frames", "lights"), ("gain", "mask"))
-    lit = tuple(
-        each.one_of(tuple(lights), "name one of `lights`, or add it there")
-        for each in members["lights"].items(capture.MOST_PHOTOGRAPHS)
-    )
-    frames = tuple(_frame(each, folder) for each in members["frames"].items(MOST_FRAMES))
-    gain = capture.gain_of(members.get("gain"), " + ".join(lit))
-    mask = capture.file_of(members["mask"], folder, "a mask, an image") if "mask" in members else None
-    return Shot(member.path, frames, lit, gain, mask)
-
-
-def _frame(member: Member, folder: Path) -> FrameFile:
-    """A file, or an object of file and exposure."""
-    if isinstance(member.value, str):
-        return FrameFile(member.path, capture.file_of(member, folder, "an exposure"), None)
-    members = member.members(("file",), ("exposure",))
-    exposure = members.get("exposure")
-    return FrameFile(
-        member.path,
-        capture.file_of(members["file"], folder, "an exposure"),
-        exposure.number(0, _LARGEST, "shutter time times aperture times sensitivity", above=True) if exposure else None,
-    )
