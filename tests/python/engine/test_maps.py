@@ -267,7 +267,7 @@ def test_wrong_maps_are_refused_with_what_is_allowed(ball, how, said):
 
 
 def test_the_names_of_python_and_of_the_schema_are_the_engine_s():
-    material = json.loads((DOCS / "scene.schema.json").read_text())["properties"]["material"]["anyOf"][1]["properties"]
+    material = json.loads((DOCS / "scene.schema.json").read_text())["$defs"]["material"]["anyOf"][1]["properties"]
     for kind, text, member in ((MapKind, "none", "map"), (MapRepeat, "box,repeat=none", "repeat")):
         with pytest.raises(InputError) as refused:
             core.with_map("wax.npz", text)
