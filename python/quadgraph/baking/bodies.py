@@ -99,7 +99,7 @@ def check(bodies: Sequence[BodyMesh], options: BakeOptions) -> None:
 def check_name(name: str, where: str) -> None:
     """Raise InputError that begins with `where` unless a body can have that name (engine/file/body_names.h)."""
     marks = [mark for mark in name if mark in _NAME_MARKS or not mark.isprintable()]
-    if not 1 <= len(name.encode()) <= MOST_NAME_BYTES or marks:
+    if not 1 <= len(name.encode(errors="replace")) <= MOST_NAME_BYTES or marks:
         raise InputError(
             f"{where}: {name[:80]!r} found, 1 to {MOST_NAME_BYTES} bytes are wanted, without "
             f"{', '.join(_NAME_MARKS)} and control characters"

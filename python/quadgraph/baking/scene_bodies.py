@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -100,9 +101,14 @@ def _mesh(entry: dict[str, Any], where: str, folder: Path) -> Path:
 
 def _text(entry: dict[str, Any], where: str, name: str, usual: str, allowed: str) -> str:
     value = entry.get(name, usual)
-    if not isinstance(value, str) or not value or "\0" in value:
+    if not isinstance(value, str) or not value or "\0" in value or not _is_text(value):
         _refuse(f"{where}/{name}", value, allowed)
     return value
+
+
+def _is_text(value: str) -> bool:
+    """Whether it can be written: JSON may hold halves of characters."""
+    return value == value.encode(errors="ignore").decode()
 
 
 def _one_of(value: Any, where: str, allowed: tuple[str, ...]) -> str:
@@ -134,7 +140,15 @@ def _number(entry: dict[str, Any], where: str, name: str, usual: float) -> float
     value = entry.get(name, usual)
     if isinstance(value, bool) or not isinstance(value, int | float):
         _refuse(f"{where}/{name}", value, "a number")
-    return float(value)
+    return _real(value)
+
+
+def _real(value: int | float) -> float:
+    """As a float; of a whole number that is too large for one, infinity, which no place has."""
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf
 
 
 def _triple(entry: dict[str, Any], where: str, name: str) -> Triple:
@@ -142,7 +156,7 @@ def _triple(entry: dict[str, Any], where: str, name: str) -> Triple:
     numbers = isinstance(value, list) and all(isinstance(x, int | float) and not isinstance(x, bool) for x in value)
     if not numbers or len(value) != 3:
         _refuse(f"{where}/{name}", value, "a list of three numbers")
-    x, y, z = map(float, value)
+    x, y, z = map(_real, value)
     return x, y, z
 
 
@@ -156,4 +170,5 @@ def _check_tracks(document: Mapping[str, Any]) -> None:
 
 
 def _refuse(where: str, value: Any, allowed: str) -> NoReturn:
-    raise InputError(f"{where}: found {str(value)[:80]!r}, allowed is {allowed}")
+    found = str(value)[:80].encode(errors="backslashreplace").decode()
+    raise InputError(f"{where}: found {found!r}, allowed is {allowed}")

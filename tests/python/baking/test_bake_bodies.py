@@ -152,6 +152,10 @@ WRONG = {
     "a place": ({"bodies": [{"mesh": "ball.obj", "position": [1, 2]}]}, r"^/bodies/0/position: found"),
     "no number": ({"bodies": [{"mesh": "ball.obj", "rotation": [0, True, 0]}]}, r"^/bodies/0/rotation: found"),
     "infinity": ({"bodies": [{"mesh": "ball.obj", "position": [0, 0, float("inf")]}]}, r"^/bodies/0/position: "),
+    "no double": ({"bodies": [{"mesh": "ball.obj", "position": [0, 10**400, 0]}]}, r"^/bodies/0/position: .*inf"),
+    "no double's size": ({"bodies": [{"mesh": "ball.obj", "scale": 10**400}]}, r"^/bodies/0/scale: inf found"),
+    "half a character": ({"bodies": [{"mesh": "ball.obj", "name": "\ud800"}]}, r"^/bodies/0/name: found '.*ud800'"),
+    "half a character's file": ({"bodies": [{"mesh": "\ud800.obj"}]}, r"^/bodies/0/mesh: found"),
     "half a vertex": (
         {"bodies": [{"mesh": "ball.obj", "surface_vertices": 9.5}]},
         r"^/bodies/0/surface_vertices: found '9.5'",
