@@ -24,14 +24,23 @@ _SIZES = {"unit": "unit", "height": "height_mm", "longest": "longest_mm"}  # as 
 
 @dataclass(frozen=True)
 class SceneBodies:
-    """meshes: what is to be baked; document: the rest of the scene, but for its `body`."""
+    """meshes: what is to be baked; document: the rest of the scene, but for its `body`; said: where the scene says what
+    the document has elsewhere, by that place.
+    """
 
     meshes: list[BodyMesh]
     document: dict[str, Any]
+    said: dict[str, str]
 
     def with_body(self, body: Path) -> dict[str, Any]:
         """The scene of the baked file."""
         return {"body": str(body.absolute()), **self.document}
+
+    def as_said(self, error: str) -> str:
+        """What is wrong with the document, by the places of the scene."""
+        for place, said in self.said.items():
+            error = error.replace(f"{place}:", f"{said}:").replace(f"{place}/", f"{said}/")
+        return error
 
 
 def has_bodies(document: Any) -> bool:
@@ -57,12 +66,14 @@ def read(document: Mapping[str, Any], folder: Path) -> SceneBodies:
         raise InputError(f"/{error}") from None
     rest = {name: value for name, value in document.items() if name != "bodies"}
     materials = rest.get("materials", {})
+    said = {}
     for number, (entry, mesh) in enumerate(zip(entries, meshes, strict=True)):
         if "material" in entry:
             if isinstance(materials, Mapping) and mesh.name in materials:
                 _refuse(f"/materials/{mesh.name}", materials[mesh.name], f"none, as /bodies/{number}/material says it")
+            said[f"/materials/{mesh.name}"] = f"/bodies/{number}/material"
             materials = {**materials, mesh.name: entry["material"]} if isinstance(materials, Mapping) else materials
-    return SceneBodies(meshes, rest | ({"materials": materials} if materials != {} else {}))
+    return SceneBodies(meshes, rest | ({"materials": materials} if materials != {} else {}), said)
 
 
 def _body(entry: Any, where: str, folder: Path) -> BodyMesh:

@@ -40,8 +40,13 @@ def opened(path: Path) -> Iterator[tuple[SceneFile, dict[str, Any]]]:
         yield file, json_text.loads(regular_file.read_bytes(path)) if document is None else document
         return
     with contextlib.ExitStack() as stack:
-        plain = stack.enter_context(_baked(path, document))
-        yield load_core().scene_file(json.dumps(plain), path), plain
+        found = _bodies(path, document)
+        plain = stack.enter_context(_baked(path, found))
+        try:
+            file = load_core().scene_file(json.dumps(plain), path)
+        except InputError as error:
+            raise InputError(found.as_said(str(error))) from None
+        yield file, plain
 
 
 def content(path: Path) -> Any:
@@ -79,10 +84,9 @@ def _bodies(path: Path, document: dict[str, Any]) -> SceneBodies:
 
 
 @contextlib.contextmanager
-def _baked(path: Path, document: dict[str, Any]) -> Iterator[dict[str, Any]]:
+def _baked(path: Path, found: SceneBodies) -> Iterator[dict[str, Any]]:
     from quadgraph.baking import kept
 
-    found = _bodies(path, document)
     errors = Console(stderr=True, highlight=False, soft_wrap=True)
 
     def tell(text: str) -> None:

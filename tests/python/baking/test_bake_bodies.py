@@ -13,6 +13,7 @@ from quadgraph.baking.bodies import BodyMesh, bake_bodies, meshes_as_they_lie, p
 from quadgraph.baking.pipeline import BakeOptions, bake
 from quadgraph.baking.placing import BodyPlacement, check_apart
 from quadgraph.base.errors import InputError
+from quadgraph.commands import scene_file
 from quadgraph.file import qgraph_file
 from quadgraph.mesh import named_parts
 from shapes import cube, icosphere, join, moved, torus, write_obj
@@ -183,6 +184,14 @@ def test_a_scene_without_names_takes_those_of_files(meshes):
     assert [body.name for body in found.meshes] == ["ball"]
     assert found.document == {"camera": {"azimuth": 5}, "materials": {"ball": "jade"}}
     assert json.dumps(found.with_body(meshes["ball"]))
+
+
+def test_a_wrong_material_is_named_where_the_scene_says_it(meshes, tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    path = meshes["ball"].parent / "wrong.json"
+    path.write_text(json.dumps(scene(meshes, material={"name": "jade", "eta": 9})))
+    with pytest.raises(InputError, match=r"wrong.json: /bodies/0/material: .*'eta'"), scene_file.opened(path):
+        pass
 
 
 def test_the_bodies_of_a_scene_are_baked_once(meshes, tmp_path, monkeypatch):
