@@ -274,26 +274,24 @@ gpu::Material parse_material(std::string_view text) {
   return material;
 }
 
-std::optional<glm::vec3> g_of(std::span<const gpu::Material> materials) {
-  if (materials.empty()) return std::nullopt;
-  const glm::vec3 g = materials[0].g;
-  const auto differs = [&](const gpu::Material& material) {
-    return material.g != g || (material.pattern != gpu::PATTERN_NONE && material.second_g != g);
-  };
-  return std::ranges::any_of(materials, differs) ? std::nullopt : std::optional(g);
+ScatteringAngles angles_of(const gpu::Material& material) {
+  if (material.pattern != gpu::PATTERN_NONE && material.second_g != material.g) return {.same = false};
+  return {.g = material.g};
 }
 
-std::string phase_warning(std::span<const gpu::Material> materials, bool measured) {
-  const auto turns = [](const gpu::Material& material) {
-    return material.g != glm::vec3(0) || material.second_g != glm::vec3(0);
-  };
-  const std::optional<glm::vec3> g = g_of(materials);
-  if (std::ranges::none_of(materials, turns) || (g && measured)) return "";
+ScatteringAngles angles_of(std::span<const ScatteringAngles> bodies) {
+  if (bodies.empty()) return {};
+  const auto differs = [&](const ScatteringAngles& body) { return body != bodies[0]; };
+  return std::ranges::any_of(bodies, differs) ? ScatteringAngles{.same = false} : bodies[0];
+}
+
+std::string phase_warning(const ScatteringAngles& angles, bool measured) {
+  if (angles.same && (measured || angles.g == glm::vec3(0))) return "";
   const std::string said =
       "the stated error is that of sigma_s_prime = (1 - g) sigma_s: what the angles of scattering change besides, most "
       "in bodies that are thin or absorb much (docs/accuracy.md, \"Scattering that goes forwards\"), is not in it";
-  return g ? said + "; at rest, with the correction, walks measure it"
-           : said + ", and walks measure it only where g is the same everywhere";
+  return angles.same ? said + "; at rest, with the correction, walks measure it"
+                     : said + ", and walks measure it only where g is the same everywhere";
 }
 
 void check_material(const gpu::Material& material) {

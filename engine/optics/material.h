@@ -43,14 +43,20 @@ std::string_view pattern_name(const gpu::Material& material);
 // to 1e6, eta in [1, 3], mean_free_path > 0, g above -1 and below 1, roughness in roughness_range; all finite).
 gpu::Material parse_material(std::string_view text);
 
-// Mean cosine of the angle by which light scatters, the same everywhere. Nothing where materials, or two sets of one,
-// differ in it.
-std::optional<glm::vec3> g_of(std::span<const gpu::Material> materials);
+// What is known of the angles by which light scatters: g, their mean cosine, 0 where nothing is; where it is not the
+// same everywhere, that alone.
+struct ScatteringAngles {
+  glm::vec3 g{0};
+  bool same = true;
 
-// What is to be said of materials of one body or several, of which one scatters forwards or back, as the stated error
-// knows of the reduced coefficient alone; `measured`: walks that know of g do the rest, where that is the same
-// everywhere. Empty where there is nothing.
-std::string phase_warning(std::span<const gpu::Material> materials, bool measured);
+  bool operator==(const ScatteringAngles&) const = default;
+};
+ScatteringAngles angles_of(const gpu::Material& material);
+ScatteringAngles angles_of(std::span<const ScatteringAngles> bodies);
+
+// What is to be said of them, as the stated error knows of the reduced coefficient alone; `measured`: walks that know
+// of g do the rest, where it is the same everywhere. Empty where there is nothing.
+std::string phase_warning(const ScatteringAngles& angles, bool measured);
 
 // Throws InputError if a coefficient is out of range.
 void check_material(const gpu::Material& material);

@@ -75,8 +75,7 @@ void CellCosts::run(const Voxels& voxels, const PathMesh& mesh, const device::Bu
   if (!material_ && optical_.size() == 0) {
     throw InputError(
         "shortest-path: coefficients are given per node of levels, as those of several bodies are, which it does not "
-        "know; give a material or a "
-        "volume");
+        "know; give a material or a volume");
   }
   gpu::PathMaterial body = grid_;
   if (material_) body.material = *material_;

@@ -63,7 +63,7 @@ BodyMaterial body_material(const std::string& text) {
           .eta = material.eta,
           .roughness = stated_roughness(text).value_or(default_roughness),
           .wants_depth = layered,
-          .angles = material,
+          .angles = angles_of(material),
           .at = [material, layered](std::span<const glm::vec3> points, std::span<const float> depths) {
             std::vector<gpu::Optical> optical;
             for (std::size_t i = 0; i < points.size(); ++i) {
@@ -94,9 +94,9 @@ void Engine::set_materials(std::span<const BodyMaterial> materials) {
     simulation.set_optical(i, at_nodes(levels[i], materials), materials[0].eta,
                            i == 0 ? std::span(elsewhere) : std::span<const gpu::Optical>());
   }
-  std::vector<gpu::Material> angles;
+  std::vector<ScatteringAngles> angles;
   for (const BodyMaterial& material : materials) angles.push_back(material.angles);
-  simulation.set_angles(angles);
+  simulation.set_angles(angles_of(angles));
   self.paths.clear();
   self.material = text_of(materials, bodies);
   self.certainty = {};

@@ -16,7 +16,7 @@ struct BodyMaterial {
   float eta = default_eta;
   float roughness = default_roughness;  // GGX alpha
   bool wants_depth = false;
-  gpu::Material angles{};  // of what is known of the angles of scattering, its g and second_g
+  ScatteringAngles angles{};
   // Coefficients at points, mm, in the shape at rest; depths: mm below the surface, empty unless they are wanted.
   std::function<std::vector<gpu::Optical>(std::span<const glm::vec3> points, std::span<const float> depths)> at{};
 };

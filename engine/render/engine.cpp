@@ -220,7 +220,7 @@ SolveReport Engine::solve(const SolveOptions& options, const std::function<void(
   if (self.report->correction && !options.warm && !self.lights.empty()) {
     self.interruptible([&] { self.state_light_error(options); });
   }
-  if (self.report->correction && !options.warm && (options.certify > 0 || self.simulation->scatters_by_angle())) {
+  if (self.report->correction && !options.warm && self.simulation->certifies(options)) {
     self.interruptible([&] { self.simulation->certify(options, *self.report, check); });
   }
   const bool of_one_text = !by_path && !self.body_roughness;

@@ -68,6 +68,11 @@ std::string advice(const SolveReport& report) {
   return off + "what another sweep would change: more --sweeps bring it down";
 }
 
+void state_anew(SolveReport& report, double wanted) {
+  state_missed(report, wanted);
+  report.advice = advice(report);
+}
+
 std::string stopped(const LevelReport& level) {
   char residual[32];
   std::snprintf(residual, sizeof(residual), "%.2e", level.residual);

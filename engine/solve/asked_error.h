@@ -29,6 +29,9 @@ void state_missed(SolveReport& report, double wanted);
 // In words, of a stated error above 5%: the largest of its parts, and what makes it smaller; empty below.
 std::string advice(const SolveReport& report);
 
+// Both, of a report whose stated error has changed.
+void state_anew(SolveReport& report, double wanted);
+
 // In words, of a level that did not converge.
 std::string stopped(const LevelReport& level);
 

@@ -47,7 +47,7 @@ void Coefficients::changed() {
 void Coefficients::set(const gpu::Material& material) {
   check_material(material);
   material_ = material;
-  made_of_ = {material};
+  angles_ = angles_of(material);
   given_elsewhere_.clear();
   for (device::Buffer& given : given_) given = {};
   changed();
@@ -63,7 +63,7 @@ void Coefficients::set(std::uint32_t number, std::span<const gpu::Optical> optic
   check_eta(static_cast<double>(eta));
   if (material_) std::fill(albedo_.begin(), albedo_.end(), std::nullopt);
   material_.reset();
-  made_of_.clear();
+  angles_ = {};
   device::rewrite(device_, optical, "material/level " + std::to_string(number) + " given", given_[number]);
   changed();
   eta_ = eta;

@@ -37,9 +37,9 @@ class Coefficients {
 
   float eta() const { return eta_; }
 
-  // What the coefficients are of, as far as they are of materials, for what it says of g; until the next are set.
-  void made_of(std::span<const gpu::Material> materials) { made_of_.assign(materials.begin(), materials.end()); }
-  const std::vector<gpu::Material>& made_of() const { return made_of_; }
+  // By which angles light scatters, until the next coefficients are set.
+  void set(const ScatteringAngles& angles) { angles_ = angles; }
+  const ScatteringAngles& angles() const { return angles_; }
 
   // Whether the coefficients are the same everywhere.
   bool even() const { return material_ && material_->pattern == gpu::PATTERN_NONE && edits_.edits.empty(); }
@@ -88,7 +88,7 @@ class Coefficients {
   device::Device& device_;
   std::span<const Level> rest_;
   std::optional<gpu::Material> material_;
-  std::vector<gpu::Material> made_of_;
+  ScatteringAngles angles_;
   std::vector<device::Buffer> given_;  // arrays, per level, where there is no material
   EditArrays edits_{{}};
   EditBuffers edit_buffers_;

@@ -44,8 +44,8 @@ void Simulation::set_material(const gpu::Material& material) {
   implementation_->disassemble();
 }
 
-void Simulation::set_angles(std::span<const gpu::Material> materials) {
-  implementation_->coefficients.made_of(materials);
+void Simulation::set_angles(const ScatteringAngles& angles) {
+  implementation_->coefficients.set(angles);
 }
 
 void Simulation::set_optical(std::uint32_t level, std::span<const gpu::Optical> optical, float eta,
@@ -110,7 +110,7 @@ const Level& Simulation::present_level() const {
 
 void Simulation::make_room(const SolveOptions& options, bool gather) {
   implementation_->make_room(implementation_->key_of(options), options);
-  if (options.certify > 0) made(implementation_->certifier, implementation_->device, implementation_->shape);
+  if (certifies(options)) made(implementation_->certifier, implementation_->device, implementation_->shape);
   implementation_->work.recorder.submit();
   if (gather) implementation_->gather_room();
 }
@@ -119,7 +119,7 @@ SolveReport Simulation::solve(const SolveOptions& options, const std::function<v
                               const std::function<void(bool)>& light) {
   SolveReport report = implementation_->solve(options, check, light);
   const bool measured = report.correction && !options.warm;
-  report.phase_warning = quadgraph::phase_warning(implementation_->coefficients.made_of(), measured);
+  report.phase_warning = quadgraph::phase_warning(implementation_->coefficients.angles(), measured);
   if (!options.warm && report.correction) state_medium_error(options, report);
   return report;
 }
@@ -188,8 +188,9 @@ void Simulation::state_medium_error(const SolveOptions& options, SolveReport& re
   });
 }
 
-bool Simulation::scatters_by_angle() const {
-  return g_of(implementation_->coefficients.made_of()).value_or(glm::vec3(0)) != glm::vec3(0);
+bool Simulation::certifies(const SolveOptions& options) const {
+  return options.certify > 0 ||
+         (corrects(options) && !options.warm && implementation_->coefficients.angles().g != glm::vec3(0));
 }
 
 void Simulation::certify(const SolveOptions& options, SolveReport& report, const std::function<void()>& check) {
@@ -202,12 +203,11 @@ void Simulation::certify(const SolveOptions& options, SolveReport& report, const
                                  .surface = surface_field(),
                                  .scale = device::download<gpu::Scale>(self.device, self.work.scale)[0],
                                  .entered = report.energy.entered,
-                                 .g = g_of(self.coefficients.made_of()).value_or(glm::vec3(0))},
+                                 .g = self.coefficients.angles().g},
                                 options.certify, options.sweep_seed, check);
-  if (scatters_by_angle()) add_phase_error(report);
+  if (self.coefficients.angles().g != glm::vec3(0)) add_phase_error(report);
   state_disagreement(report);
-  state_missed(report, options.error);
-  report.advice = advice(report);
+  state_anew(report, options.error);
   self.passes = self.work.recorder.passes();
 }
 
@@ -215,8 +215,7 @@ void Simulation::perturb(const SolveOptions& options, SolveReport& report,
                          const std::function<void(const PerturbedSolution&)>& state) {
   Implementation& self = *implementation_;
   self.with_solution(diffusion_boundary(eta()), state);
-  state_missed(report, options.error);
-  report.advice = advice(report);
+  state_anew(report, options.error);
   self.passes = self.work.recorder.passes();
 }
 

@@ -20,6 +20,7 @@
 #include "engine/device/memory.h"
 #include "engine/file/graph.h"
 #include "engine/optics/edit.h"
+#include "engine/optics/material.h"
 #include "engine/reference/solution.h"
 #include "engine/solve/level_buffers.h"
 #include "engine/solve/level_light.h"
@@ -73,8 +74,8 @@ class Simulation {
   void set_optical(std::uint32_t level, std::span<const gpu::Optical> optical, float eta,
                    std::span<const gpu::Optical> elsewhere = {});
 
-  // Materials whose g says by which angles light scatters in the coefficients that were set; they say nothing else.
-  void set_angles(std::span<const gpu::Material> materials);
+  // By which angles light scatters, of what set_optical has set on all levels.
+  void set_angles(const ScatteringAngles& angles);
 
   // Edits of the material or the coefficients, one after the other, in place of those before; kept for what is set
   // later. Throws InputError naming the edit and as check_edit.
@@ -135,8 +136,8 @@ class Simulation {
   // The error of the light, of what was said there, and with it all that `report`, of that solve, says of its error.
   void state_light_error(const SolveOptions& options, SolveReport& report);
 
-  // Whether a material says its g, which `certify` measures without being asked for.
-  bool scatters_by_angle() const;
+  // Whether `certify` is wanted of such a solve: it was asked for, or the material says its g.
+  bool certifies(const SolveOptions& options) const;
 
   // Random walks for options.certify seconds, or a number of them, after all else is said of the error in `report`, of
   // that solve. `check` as of `solve`.

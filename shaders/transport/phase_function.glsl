@@ -13,12 +13,14 @@ vec3 direction_about(vec3 axis, float cosine, float azimuth) {
   return normalize(cosine * axis + sqrt(max(1.0 - cosine * cosine, 0.0)) * across);
 }
 
-// A direction after light that travels along one has scattered; g: mean cosine of the angle [Henyey 1941].
+// A direction after light that travels along one has scattered; g: mean cosine of the angle [Henyey 1941], whose
+// inverted distribution is written without a difference that a small g would lose.
 vec3 scattered_from(vec3 direction, float g, inout uint state) {
   float z = 2.0 * uniform_number(state) - 1.0, azimuth = ALL_AROUND * uniform_number(state);
   if (g == 0.0) return vec3(sqrt(1.0 - z * z) * vec2(cos(azimuth), sin(azimuth)), z);
-  float turned = (1.0 - g * g) / (1.0 + g * z);
-  return direction_about(direction, clamp((1.0 + g * g - turned * turned) / (2.0 * g), -1.0, 1.0), azimuth);
+  float thinned = 1.0 + g * z;
+  float cosine = z + 0.5 * g * (z * z + 3.0) + g * g * z - 0.5 * g * g * g * (1.0 - z * z);
+  return direction_about(direction, clamp(cosine / (thinned * thinned), -1.0, 1.0), azimuth);
 }
 
 #endif

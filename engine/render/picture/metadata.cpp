@@ -50,10 +50,6 @@ std::string inter_reflection_text(const SolveOptions& options, const SolveReport
          " of the light again";
 }
 
-}  // namespace
-
-namespace {
-
 std::string scattering_text(const std::string& prefix, const glm::vec3& sigma_s_prime, const glm::vec3& g) {
   const std::string known = g == glm::vec3(0) ? "" : "," + prefix + "g=" + rgb_text(g);
   return prefix + "sigma_s_prime=" + rgb_text(sigma_s_prime) + known;

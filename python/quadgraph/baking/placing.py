@@ -5,17 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import combinations, pairwise
+from itertools import combinations
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from quadgraph.base.errors import InputError
 from quadgraph.mesh.intersections import intersecting_triangles
 from quadgraph.mesh.surface import Surface
+from quadgraph.mesh.winding import winding_number
 
 Triple = tuple[float, float, float]
 _MOST = 1e7  # of a coordinate, mm, and of a scale
-_POINTS = 4096  # triangles whose solid angles are added up at once
 _APART = "move one of them by its position, or make it smaller by its scale, so that there is a gap between them"
 
 
@@ -38,23 +39,12 @@ class BodyPlacement:
         if not (math.isfinite(self.scale) and 1 / _MOST <= self.scale <= _MOST):
             raise InputError(f"{name}scale: {self.scale} found, allowed are {1 / _MOST:g} to {_MOST:g}")
 
-    @property
-    def matrix(self) -> np.ndarray:
-        """(3, 3), by which a place as a column is turned."""
-        turned = np.eye(3)
-        for axis, degrees in enumerate(self.rotation):
-            (a, b), angle = sorted({0, 1, 2} - {axis}), math.radians(degrees)
-            step = np.eye(3)
-            step[a, a] = step[b, b] = math.cos(angle)
-            step[b, a], step[a, b] = (1 if axis != 1 else -1) * np.array([1, -1]) * math.sin(angle)
-            turned = step @ turned
-        return turned
-
     def of(self, surface: Surface) -> Surface:
         """The surface, mm, where it is to lie."""
         if self == BodyPlacement():
             return surface
-        return Surface(self.scale * surface.vertices @ self.matrix.T + np.array(self.position), surface.triangles)
+        turned = Rotation.from_euler("xyz", self.rotation, degrees=True).apply(surface.vertices)
+        return Surface(self.scale * turned + np.array(self.position), surface.triangles)
 
 
 def joined(surfaces: Sequence[Surface]) -> Surface:
@@ -100,17 +90,4 @@ def _contains(outer: Surface, inner: Surface) -> bool:
     """Whether a piece of `inner` begins inside the solid of `outer`, of which it crosses no face."""
     count, label = inner.vertex_components
     first = [int(np.argmax(label == piece)) for piece in range(count)]
-    return any(round(_winding(outer, inner.vertices[vertex])) > 0 for vertex in first)
-
-
-def _winding(surface: Surface, point: np.ndarray) -> float:
-    """How often a closed surface goes around a point: its solid angle over 4 pi (van Oosterom and Strackee 1983)."""
-    total = 0.0
-    edges = [*range(0, len(surface.triangles), _POINTS), len(surface.triangles)]
-    for begin, end in pairwise(edges):
-        a, b, c = np.moveaxis(surface.corners[begin:end] - point, 1, 0)
-        la, lb, lc = (np.linalg.norm(side, axis=1) for side in (a, b, c))
-        volume = np.einsum("ij,ij->i", a, np.cross(b, c))
-        rest = la * lb * lc + (a * b).sum(axis=1) * lc + (b * c).sum(axis=1) * la + (c * a).sum(axis=1) * lb
-        total += float(2 * np.arctan2(volume, rest).sum())
-    return total / (4 * math.pi)
+    return any(round(winding_number(outer, inner.vertices[vertex])) > 0 for vertex in first)

@@ -47,8 +47,7 @@ def _read_stl(path: Path) -> Arrays:
 def _read_gltf(path: Path) -> Arrays:
     """All triangle meshes of the scene under their nodes' transforms, as one."""
     gltf_file.check_plain(gltf_file.GltfFile(path))
-    scene = trimesh.load_scene(path, process=False, skip_materials=True)  # images would be decoded
-    parts = [part for part in scene.dump() if isinstance(part, trimesh.Trimesh)]
+    parts = named_parts.gltf_parts(path)
     if not parts:
         return np.empty((0, 3)), np.empty((0, 3), np.int64)
     offsets = np.cumsum([0] + [len(part.vertices) for part in parts])

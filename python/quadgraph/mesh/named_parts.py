@@ -51,9 +51,14 @@ def _of_obj(path: Path) -> np.ndarray:
     return np.repeat(np.array(found, object), np.maximum(counts, 0))
 
 
+def gltf_parts(path: Path) -> list[trimesh.Trimesh]:
+    """The triangle meshes of a glTF scene under their nodes' transforms, in its order."""
+    scene: Any = trimesh.load_scene(path, process=False, skip_materials=True)  # images would be decoded
+    return [part for part in scene.dump() if isinstance(part, trimesh.Trimesh)]
+
+
 def _of_gltf(path: Path) -> np.ndarray:
-    scene: Any = trimesh.load_scene(path, process=False, skip_materials=True)
-    parts = [part for part in scene.dump() if isinstance(part, trimesh.Trimesh)]
+    parts = gltf_parts(path)
     called = [str(part.metadata.get("node", path.stem)) for part in parts]
     return np.repeat(np.array(called, object), [len(part.faces) for part in parts])
 

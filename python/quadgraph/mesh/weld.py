@@ -8,6 +8,7 @@ from scipy.sparse.csgraph import breadth_first_order, connected_components
 from scipy.spatial import cKDTree
 
 from quadgraph.mesh.surface import Surface
+from quadgraph.mesh.winding import winding_number
 
 
 def merge_vertices(surface: Surface, tolerance_mm: float) -> tuple[Surface, int]:
@@ -107,16 +108,6 @@ def _inward_pieces(surface: Surface) -> np.ndarray:
     pieces = [Surface(surface.vertices, surface.triangles[labels == k]) for k in range(labels.max() + 1)]
     turn = np.zeros(len(pieces), bool)
     for k, piece in enumerate(pieces):
-        inside = sum(_winds_around(other, piece.corners[0, 0]) for j, other in enumerate(pieces) if j != k)
+        inside = sum(abs(winding_number(other, piece.corners[0, 0])) > 0.5 for j, other in enumerate(pieces) if j != k)
         turn[k] = (piece.compacted().volume < 0) != (inside % 2 == 1)
     return turn[labels]
-
-
-def _winds_around(surface: Surface, point: np.ndarray) -> bool:
-    """Whether a closed surface encloses a point, by the solid angle of its triangles (Van Oosterom, Strackee 1983)."""
-    a, b, c = np.moveaxis(surface.corners - point, 1, 0)
-    la, lb, lc = (np.linalg.norm(side, axis=1) for side in (a, b, c))
-    above = np.einsum("ij,ij->i", a, np.cross(b, c))
-    dots = [np.einsum("ij,ij->i", p, q) for p, q in ((a, b), (b, c), (c, a))]
-    angle = 2 * np.arctan2(above, la * lb * lc + dots[0] * lc + dots[1] * la + dots[2] * lb)
-    return bool(abs(angle.sum()) > 2 * np.pi)

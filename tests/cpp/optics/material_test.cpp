@@ -132,20 +132,23 @@ TEST_CASE("scattering of a mean cosine is reduced by it, channel by channel") {
 
 TEST_CASE("a material keeps the mean cosine by which it was reduced, and says where no walk can go by it") {
   CHECK(parse_material("sigma_s=20/10/5,g=0.9/0.8/-0.5,sigma_a=0.01").g == glm::vec3(0.9f, 0.8f, -0.5f));
-  const std::vector skin{parse_material("skin1,g=0.8")};
-  CHECK(skin[0].sigma_s_prime == parse_material("skin1").sigma_s_prime);
-  CHECK(*g_of(skin) == glm::vec3(0.8f));
-  CHECK(phase_warning(skin, true).empty());
-  CHECK(phase_warning(skin, false).find("at rest") != std::string::npos);
-  CHECK(phase_warning(std::vector{parse_material("skin1")}, false).empty());
-  CHECK(*g_of(std::vector{parse_material("marble-veins,g=0.5,second_g=0.5"), parse_material("skin1,g=0.5")}) ==
-        glm::vec3(0.5f));
-  for (const std::vector<gpu::Material>& different :
-       {std::vector{parse_material("marble-veins,g=0.5")}, std::vector{skin[0], parse_material("skin1")}}) {
-    CHECK_FALSE(g_of(different));
+  const gpu::Material skin = parse_material("skin1,g=0.8");
+  const ScatteringAngles known = angles_of(skin), none = angles_of(parse_material("skin1"));
+  CHECK(skin.sigma_s_prime == parse_material("skin1").sigma_s_prime);
+  CHECK(known == ScatteringAngles{.g = glm::vec3(0.8f)});
+  CHECK(none == ScatteringAngles{});
+  CHECK(phase_warning(known, true).empty());
+  CHECK(phase_warning(known, false).find("at rest") != std::string::npos);
+  CHECK(phase_warning(none, false).empty());
+  const ScatteringAngles both = angles_of(parse_material("marble-veins,g=0.8,second_g=0.8"));
+  CHECK(angles_of(std::vector{both, known}) == known);
+  CHECK(angles_of(std::vector{none, none}) == none);
+  for (const ScatteringAngles& different :
+       {angles_of(parse_material("marble-veins,g=0.5")), angles_of(std::vector{known, none})}) {
+    CHECK(different == ScatteringAngles{.same = false});
     CHECK(phase_warning(different, true).find("the same everywhere") != std::string::npos);
   }
-  gpu::Material wrong = skin[0];
+  gpu::Material wrong = skin;
   wrong.g = glm::vec3(0, 1, 0);
   CHECK_THROWS_AS(check_material(wrong), InputError);
 }

@@ -59,9 +59,10 @@ TEST_CASE(
   material.eta = 1.3f;
   material.g = {0.9f, 0.6f, -0.5f};
   scene.simulation.set_material(material);
-  CHECK(scene.simulation.scatters_by_angle());
   scene.light([](const glm::vec3& normal) { return normal.z > 0.5f ? glm::vec3(1) : glm::vec3(0); });
   const SolveOptions options{.correction = true, .sweeps = 1, .sweep_points = 2000};
+  CHECK(scene.simulation.certifies(options));
+  CHECK_FALSE(scene.simulation.certifies({.correction = false}));
   SolveReport report = scene.simulation.solve(options);
   const double before = report.error->whole;
   scene.simulation.certify(options, report, {});
@@ -72,6 +73,23 @@ TEST_CASE(
   CHECK(report.phase_warning.empty());
   CHECK(std::hypot(before, report.phase_error->whole) == doctest::Approx(report.error->whole));
   CHECK(report.error->whole >= found.whole.error);
+}
+
+TEST_CASE("a mean cosine that is next to none scatters as none does") {
+  const auto power_behind = [](float g) {
+    Scene scene({8, 4});
+    gpu::Material material{};
+    material.sigma_s_prime = glm::vec3(0.5f);
+    material.sigma_a = glm::vec3(0.5f);
+    material.eta = 1;
+    material.g = glm::vec3(g);
+    scene.simulation.set_material(material);
+    scene.light([](const glm::vec3& normal) { return normal.z > 0.5f ? glm::vec3(1) : glm::vec3(0); });
+    return certified(scene, 1).unlit;
+  };
+  const CertifiedPart small = power_behind(1e-7f), larger = power_behind(1e-3f);
+  CHECK(larger.power_noise < 0.01);
+  CHECK(std::abs(small.power - larger.power) < 0.002 + 5 * std::hypot(small.power_noise, larger.power_noise));
 }
 
 TEST_CASE("channels are walked by themselves, and one without light has no walks") {
