@@ -3,52 +3,41 @@
 #pragma once
 
 #include <array>
-#include <bit>
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
-#include "engine/cpu/glsl.h"
+namespace quadgraph::cpu {
 
-namespace quadgraph::cpu::QG_LEVEL {
+// A sum of three numbers, each of them of two words, the low one first (shaders/source/fixed_point.glsl).
+constexpr std::size_t channels_of_sum = 3, words_of_sum = 2 * channels_of_sum;
 
-// What one thread adds to sums of three numbers (shaders/source/fixed_point.glsl), each of them of two words, the low
-// one first. The last so many sums are kept here; all are in memory when this object is gone.
-class PendingSums {
- public:
-  PendingSums() = default;
-  PendingSums(const PendingSums&) = delete;
-  PendingSums& operator=(const PendingSums&) = delete;
-  ~PendingSums() {
-    for (Sum& sum : sums_) write(sum);
-  }
-
-  // Adds whole numbers from 0 to 2^63.
-  void add(uint* target, vec3 value) {
-    Sum& sum = sums_[reinterpret_cast<std::uintptr_t>(target) / (words_of_sum * sizeof(uint)) % sums_.size()];
-    if (sum.target != target) {
-      write(sum);
-      sum = {target, {}};
-    }
-    for (std::size_t c = 0; c < channels; ++c)
-      sum.value[c] += static_cast<std::uint64_t>(static_cast<std::int64_t>(value[c]));
-  }
-
- private:
-  static constexpr std::size_t channels = 3, words_of_sum = 2 * channels;
-  static_assert(std::endian::native == std::endian::little);
-  struct Sum {
-    uint* target = nullptr;
-    std::array<std::uint64_t, channels> value{};
-  };
-
-  static void write(const Sum& sum) {
-    if (sum.target == nullptr) return;
-    auto* words = reinterpret_cast<std::uint64_t*>(sum.target);  // buffers are aligned, and so are sums
-    for (std::size_t c = 0; c < channels; ++c) {
-      if (sum.value[c] != 0) __atomic_fetch_add(words + c, sum.value[c], __ATOMIC_RELAXED);
-    }
-  }
-
-  std::array<Sum, 1024> sums_;
+// What is to be added to a sum.
+struct PendingSum {
+  std::uint32_t* target = nullptr;
+  std::array<std::uint64_t, channels_of_sum> value{};
 };
 
-}  // namespace quadgraph::cpu::QG_LEVEL
+// What one thread has still to add. Shaders do so by engine/cpu/pending_add.h.
+class PendingSums {
+ public:
+  // Of this thread.
+  static PendingSums& of_thread();
+
+  // A quarter of a MiB: a ray meets some twenty vertices, and those beside it the same.
+  static constexpr std::size_t place_count = 8192;
+
+  PendingSum* places() { return places_.data(); }
+
+  // Puts `target` into a place that has another, which is added to memory.
+  void replace(PendingSum& place, std::uint32_t* target);
+
+  // Adds all to memory.
+  void write();
+
+ private:
+  std::vector<PendingSum> places_ = std::vector<PendingSum>(place_count);
+  std::vector<PendingSum*> used_;
+};
+
+}  // namespace quadgraph::cpu

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "engine/cpu/objects.h"
+#include "engine/cpu/pending_sums.h"
 #include "engine/cpu/processor.h"
 #include "engine/cpu/raster.h"
 #include "engine/device/device.h"
@@ -60,7 +61,7 @@ class Recording : public device::Recording {
     const auto caller = std::this_thread::get_id();
     std::atomic<bool> given_up = false;
     std::exception_ptr why;
-    processor_.threads().run(groups, part, [&](std::uint32_t begin, std::uint32_t end) {
+    const auto run_part = [&](std::uint32_t begin, std::uint32_t end) {
       if (given_up.load(std::memory_order_relaxed)) return;
       pipeline.kernel(push, groups, begin, end, pipeline.variant);
       if (std::this_thread::get_id() != caller) return;
@@ -70,7 +71,8 @@ class Recording : public device::Recording {
         why = std::current_exception();
         given_up.store(true, std::memory_order_relaxed);
       }
-    });
+    };
+    processor_.threads().run(groups, part, run_part, [] { PendingSums::of_thread().write(); });
     if (why) std::rethrow_exception(why);
   }
 

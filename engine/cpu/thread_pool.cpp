@@ -69,6 +69,7 @@ void ThreadPool::take_parts(std::size_t thread) {
       (*work_)(static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end));
     }
   }
+  if (*last_) (*last_)();
 }
 
 void ThreadPool::serve(std::size_t thread) {
@@ -83,15 +84,17 @@ void ThreadPool::serve(std::size_t thread) {
 }
 
 void ThreadPool::run(std::uint32_t count, std::uint32_t part,
-                     const std::function<void(std::uint32_t, std::uint32_t)>& work) {
+                     const std::function<void(std::uint32_t, std::uint32_t)>& work, const std::function<void()>& last) {
   const DenormalsAreZero denormals;
   if (others_.empty() || count <= part) {
     for (std::uint64_t begin = 0; begin < count; begin += part) {
       work(static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(std::min<std::uint64_t>(begin + part, count)));
     }
+    if (last) last();
     return;
   }
   work_ = &work;
+  last_ = &last;
   count_ = count;
   part_ = part;
   hand_out();

@@ -23,9 +23,10 @@ class ThreadPool {
 
   // Calls work(begin, end) for parts of [0, count), of at most `part` and each once, on all threads; waits for them. A
   // thread works on the same stretch in every call with the same numbers, which its cache holds then, and after it on
-  // what others have left of theirs.
+  // what others have left of theirs. Behind its last part each thread calls `last`, where there is one.
   // One call at a time, and not from within `work`. What throws ends the program. Denormals are zero in `work`.
-  void run(std::uint32_t count, std::uint32_t part, const std::function<void(std::uint32_t, std::uint32_t)>& work);
+  void run(std::uint32_t count, std::uint32_t part, const std::function<void(std::uint32_t, std::uint32_t)>& work,
+           const std::function<void()>& last = {});
 
  private:
   struct alignas(64) Share {  // of a thread: its own cache line
@@ -41,6 +42,7 @@ class ThreadPool {
   std::vector<Share> shares_;  // the caller's first
   std::vector<std::jthread> others_;
   const std::function<void(std::uint32_t, std::uint32_t)>* work_ = nullptr;
+  const std::function<void()>* last_ = nullptr;
   std::uint32_t count_ = 0, part_ = 1;
   std::atomic<std::uint32_t> round_{0};  // grows by one with every run
   std::atomic<std::uint32_t> busy_{0};   // others that have not finished it

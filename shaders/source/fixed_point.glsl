@@ -7,10 +7,10 @@
 // Adds `value` >= 0, scaled, to element `i`. A float times a power of two splits into two words without loss, but for
 // the bits below the unit.
 #ifdef QG_PROCESSOR
-PendingSums pending;  // engine/cpu/pending_sums.h
+PendingSums& pending_sums = PendingSums::of_thread();  // engine/cpu/pending_sums.h
 
 void add_power(Uints sums, uint i, vec3 value) {
-  pending.add(sums.at + FIXED_WORDS * i, roundEven(value / POWER_UNIT));
+  add_later(pending_sums, sums.at + FIXED_WORDS * i, roundEven(value / POWER_UNIT));
 }
 #else
 void add_power(Uints sums, uint i, vec3 value) {

@@ -212,7 +212,7 @@ def native_shader(texts: Texts, file: str, moments: int) -> str:
     arguments = f"{name}, {str(grouped).lower()}" if stage == "comp" else name
     return f"""#include "engine/cpu/glsl.h"
 #include "engine/cpu/kernel.h"
-#include "engine/cpu/pending_sums.h"
+#include "engine/cpu/pending_add.h"
 
 #define QG_PROCESSOR
 #define MOMENTS {moments}

@@ -7,7 +7,9 @@
 // What shaders are compiled with is not written for the warnings that hold elsewhere.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wignored-attributes"
+#ifndef QG_LEVEL
 #define QG_LEVEL tested
+#endif
 #include "engine/cpu/glsl.h"
 #pragma GCC diagnostic pop
 

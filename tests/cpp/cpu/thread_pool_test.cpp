@@ -8,6 +8,7 @@
 #include <limits>
 #include <numeric>
 #include <thread>
+#include <utility>
 #include <vector>
 
 using namespace quadgraph;
@@ -34,6 +35,26 @@ TEST_CASE("every element is worked on once, in parts that do not overlap, also w
       pool.run(20, 1, [&](std::uint32_t begin, std::uint32_t end) { sum += end - begin; });
     }
     CHECK(sum == 3000 * 20);
+  }
+}
+
+TEST_CASE("each thread ends with `last`, once, behind the parts that it worked on") {
+  for (const unsigned threads : {1u, 2u, 7u}) {
+    CAPTURE(threads);
+    cpu::ThreadPool pool(threads);
+    for (const std::uint32_t count : {0u, 1u, 1000u}) {
+      CAPTURE(count);
+      static thread_local std::uint32_t worked;
+      std::atomic<std::uint32_t> handed_in = 0, calls = 0;
+      pool.run(
+          count, 1, [&](std::uint32_t, std::uint32_t) { ++worked; },
+          [&] {
+            handed_in += std::exchange(worked, 0);
+            ++calls;
+          });
+      CHECK(handed_in == count);
+      CHECK(calls == (count <= 1 ? 1 : threads));
+    }
   }
 }
 
