@@ -54,7 +54,7 @@ void next_material(S s, int by) {
   const auto found = std::find(names.begin(), names.end(), chosen_material(s));
   const auto count = static_cast<int>(names.size());
   const int now = found == names.end() ? (by > 0 ? -1 : 0) : static_cast<int>(found - names.begin());
-  choose_material(s, at_index_of_others(s, names[static_cast<std::size_t>((now + by + count) % count)]));
+  choose_material(s, names[static_cast<std::size_t>((now + by + count) % count)]);
 }
 
 // The one after `value`, in a circle.

@@ -20,7 +20,7 @@ constexpr float least_mm = 0.02f, most_mm = 50;  // of how far light goes
 
 // As rough as its name says.
 void take(State& state, const std::string& name) {
-  choose_material(state, at_index_of_others(state, name));
+  choose_material(state, name);
   state.scene.render.roughness.reset();
 }
 

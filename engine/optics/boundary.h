@@ -12,6 +12,8 @@ struct Boundary {
   // Diffuse source only, else 0: light q enters as if phi outside were source q, so that b gains the integral of
   // (k11, k12) source q; and M loses reflected q.
   double source = 0, reflected = 0;
+
+  bool operator==(const Boundary&) const = default;
 };
 
 // From the exact Fresnel moments; for the published baselines (quadgraph-fdm and polygrid, diffuse source, diffusion)

@@ -37,6 +37,16 @@ double diffuse_transmittance(double eta) {
   return eta * eta * (1.0 - 2.0 * fresnel_moment(1, eta));
 }
 
+double radiance_norm(double eta) {
+  constexpr int steps = 4096;
+  double sum = 0;
+  for (int i = 0; i < steps; ++i) {
+    const double cos_o = (i + 0.5) / steps;
+    sum += fresnel_transmittance(cos_o, eta) * cos_o;
+  }
+  return 2 * std::numbers::pi * sum / steps;
+}
+
 double internal_diffuse_reflectance(double eta) {
   if (eta <= 1.0) return 0.0;
   return -1.440 / (eta * eta) + 0.710 / eta + 0.668 + 0.0636 * eta;

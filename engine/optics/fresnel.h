@@ -19,6 +19,10 @@ double fresnel_moment(int n, double eta);
 // by reciprocity eta^2 (1 - 2 R_1).
 double diffuse_transmittance(double eta);
 
+// Integral of F_t(cos, eta) cos over the hemisphere, sr: what exitance is divided by to give radiance along F_t, so
+// that it integrates back to the exitance (docs/physics.md, "Gathered radiance"). pi for eta = 1.
+double radiance_norm(double eta);
+
 // Internal diffuse reflectance by the published polynomial: -1.440/eta^2 + 0.710/eta + 0.668 + 0.0636 eta for eta > 1,
 // 0 for eta = 1 [QG, PG; Groenhuis et al. 1983].
 double internal_diffuse_reflectance(double eta);

@@ -128,7 +128,7 @@ std::vector<SurfaceSample> surface_samples(const Level& level) {
     if (level.reflecting(static_cast<std::uint32_t>(f))) continue;
     const std::uint32_t tet = level.face_tets[f];
     const double area = face_area(level, level.faces[f]);
-    samples.push_back({3 * tet_volume(level, level.tets[tet]) / area, area, tet});
+    samples.push_back({3 * tet_volume(level, level.tets[tet]) / area, area, tet, level.body_of_tet(tet)});
   }
   return samples;
 }
@@ -142,19 +142,20 @@ double mean_chord(const Level& level) {
   return area > 0 ? 4 * volume / area : HUGE_VAL;
 }
 
-Resolution resolution_of(std::span<const SurfaceSample> samples, std::span<const gpu::Optical> optical, double eta,
-                         Model model) {
-  const Boundary boundary = boundary_of(Method::fem, Source::buried, model, eta);
-  const auto index = static_cast<float>(eta);
+Resolution resolution_of(std::span<const SurfaceSample> samples, std::span<const gpu::Optical> optical,
+                         std::span<const float> eta, Model model) {
+  std::vector<Boundary> boundaries;
+  for (const float index : eta) boundaries.push_back(boundary_of(Method::fem, Source::buried, model, double{index}));
   double squares = 0, corrected = 0, sizes = 0, area = 0;
   glm::dvec3 decay(0), slow(0);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     area += samples[i].area;
-    const glm::vec3 seen = gpu::seen_of_element(optical[i], static_cast<float>(samples[i].depth), index);
+    const glm::vec3 seen = gpu::seen_of_element(optical[i], static_cast<float>(samples[i].depth), eta[samples[i].body]);
     for (int c = 0; c < 3; ++c) {
       const Local local = local_of(optical[i], c);
       if (!(local.sigma_t > 0)) continue;
-      const auto found = layered_half_space(local.albedo, boundary, samples[i].depth * local.sigma_t, model);
+      const auto found =
+          layered_half_space(local.albedo, boundaries[samples[i].body], samples[i].depth * local.sigma_t, model);
       const double off = irregular * (found.reflectance - found.exact);
       if (std::isfinite(off)) squares += samples[i].area * off * off;
       const double lost = unknown_loss * (1 - channel(seen, c)) * found.exact;
@@ -202,7 +203,8 @@ std::string inside_warning(std::span<const gpu::Optical> optical, double edge, d
          "% too weak; a file baked with --for-material would not have that";
 }
 
-std::string model_warning(std::span<const gpu::Optical> optical, double eta, double chord, Source source, Model model) {
+std::string model_warning(std::span<const gpu::Optical> optical, std::span<const float> eta, double chord,
+                          Source source, Model model) {
   const double thickness = least_thickness(optical, chord);
   if (thickness < thin_chord) {
     return "light crosses the body in " + number(thickness) +
@@ -210,7 +212,8 @@ std::string model_warning(std::span<const gpu::Optical> optical, double eta, dou
   }
   const double albedo = least_albedo_of(optical);
   if (model != Model::diffusion || source != Source::buried || albedo >= 1) return "";
-  const double off = diffusion_error(albedo, eta);
+  double off = 0;
+  for (const float index : eta) off = std::max(off, diffusion_error(albedo, double{index}));
   if (!(off > model_tolerance)) return "";
   return "diffusion is off by " + number(100 * off) + "% at albedo " + number(albedo) + ", sp3 is not";
 }

@@ -17,9 +17,10 @@ namespace quadgraph {
 
 // An outside face that stands for its neighbours.
 struct SurfaceSample {
-  double depth = 0;       // mm, height of its tet over it
-  double area = 0;        // mm^2
-  std::uint32_t tet = 0;  // behind it
+  double depth = 0;        // mm, height of its tet over it
+  double area = 0;         // mm^2
+  std::uint32_t tet = 0;   // behind it
+  std::uint32_t body = 0;  // of that
 };
 
 // Every so many'th face of a level is a sample, from the first one on; reflecting ones are left out.
@@ -38,9 +39,9 @@ struct Resolution {
   double slow = 0;       // 0 to 1, the same: how slowly sweeps settle
 };
 
-// Resolution of linear elements with the buried source. `optical`: one entry per sample.
-Resolution resolution_of(std::span<const SurfaceSample> samples, std::span<const gpu::Optical> optical, double eta,
-                         Model model);
+// Resolution of linear elements with the buried source. `optical`: one entry per sample; eta: one per body.
+Resolution resolution_of(std::span<const SurfaceSample> samples, std::span<const gpu::Optical> optical,
+                         std::span<const float> eta, Model model);
 
 // Edges of the tets of a level that are not at its surface, mm: root of the mean square by volume, each that of the
 // regular tet of its volume; 0 where all are at the surface.
@@ -51,6 +52,7 @@ double inside_edge(const Level& level);
 // transport; empty if nothing is. chord in mm.
 std::string mesh_warning(const Resolution& resolution);
 std::string inside_warning(std::span<const gpu::Optical> optical, double edge, double chord);
-std::string model_warning(std::span<const gpu::Optical> optical, double eta, double chord, Source source, Model model);
+std::string model_warning(std::span<const gpu::Optical> optical, std::span<const float> eta, double chord,
+                          Source source, Model model);
 
 }  // namespace quadgraph

@@ -4,7 +4,7 @@
 
 #include "engine/base/text.h"
 #include "engine/optics/depth.h"
-#include "engine/optics/fresnel.h"
+#include "engine/reference/operator.h"
 #include "engine/reference/tet_points.h"
 #include "engine/render/engine_implementation.h"
 #include "shaders/material/material.h"
@@ -45,12 +45,11 @@ void check_materials(std::span<const BodyMaterial> materials, std::span<const st
                      std::to_string(bodies.size()) + " bodies wanted");
   }
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    check_eta(static_cast<double>(materials[i].eta));
-    if (materials[i].eta == materials[0].eta) continue;
-    throw InputError("materials: eta=" + number_text(materials[0].eta) + " found of '" + bodies[0] +
-                     "' and eta=" + number_text(materials[i].eta) + " of '" + bodies[i] +
-                     "'; bodies of one file have one index of refraction: add eta=" + number_text(materials[0].eta) +
-                     " to the material of '" + bodies[i] + "'");
+    try {
+      check_eta(static_cast<double>(materials[i].eta));
+    } catch (const InputError& error) {
+      throw InputError("material of '" + bodies[i] + "': " + error.what());
+    }
   }
 }
 
@@ -90,8 +89,10 @@ void Engine::set_materials(std::span<const BodyMaterial> materials) {
   const std::vector<Level>& levels = self.graph.levels();
   const std::vector<gpu::Optical> elsewhere = coefficients(
       levels[0], points_in_tets(levels[0]), [&](std::uint32_t tet) { return levels[0].body_of_tet(tet); }, materials);
+  std::vector<float> eta;
+  for (const BodyMaterial& material : materials) eta.push_back(material.eta);
   for (std::uint32_t i = 0; i < levels.size(); ++i) {
-    simulation.set_optical(i, at_nodes(levels[i], materials), materials[0].eta,
+    simulation.set_optical(i, at_nodes(levels[i], materials), eta,
                            i == 0 ? std::span(elsewhere) : std::span<const gpu::Optical>());
   }
   std::vector<ScatteringAngles> angles;
@@ -100,7 +101,7 @@ void Engine::set_materials(std::span<const BodyMaterial> materials) {
   self.paths.clear();
   self.material = text_of(materials, bodies);
   self.certainty = {};
-  self.eta = materials[0].eta;
+  self.eta = std::move(eta);
   self.body_roughness.emplace(self.device, self.graph, materials);
   self.stale();
 }

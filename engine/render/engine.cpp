@@ -53,7 +53,7 @@ void Engine::set_material(const gpu::Material& material) {
   self.material = material_text(material);
   self.certainty = {};
   self.body_roughness.reset();
-  self.eta = material.eta;
+  self.eta = {material.eta};
   self.stale();
 }
 
@@ -66,7 +66,7 @@ void Engine::set_optical(std::uint32_t level, std::span<const gpu::Optical> opti
   self.material = "coefficients per node, eta=" + number_text(eta);
   self.certainty = {};
   self.body_roughness.reset();
-  self.eta = eta;
+  self.eta = {eta};
   self.stale();
 }
 
@@ -79,7 +79,7 @@ void Engine::set_optical(const OpticalGrid& grid) {
   self.material = "coefficients on a grid, eta=" + number_text(grid.eta);
   self.certainty = {};
   self.body_roughness.reset();
-  self.eta = grid.eta;
+  self.eta = {grid.eta};
   self.stale();
 }
 
@@ -324,7 +324,7 @@ Leaving Engine::leaving(std::span<const std::uint32_t> face, std::span<const glm
   return self.interruptible([&] {
     const GatherField& field = self.gather(Gather::scaled);
     if (!self.probe) self.probe.emplace(self.device);
-    return self.probe->run(self.levels().present_level(), field, self.eta, face, direction);
+    return self.probe->run(self.levels().present_level(), field, face, direction);
   });
 }
 

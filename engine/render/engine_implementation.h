@@ -63,7 +63,7 @@ struct Engine::Implementation {
   Certainty certainty;                          // of it, at the vertices of level 0
   std::optional<BodyRoughness> body_roughness;  // of the materials of several bodies
   std::vector<Light> lights;
-  float eta = 1;                  // of the material
+  std::vector<float> eta{1};      // of the material, or of those of all bodies
   bool shadows_stale = false;     // they are not those of the present lights and shape
   bool irradiance_stale = false;  // nor is q on the levels
   bool irradiance_rough = false;  // q is that of a frame in motion
@@ -146,7 +146,7 @@ struct Engine::Implementation {
 
   // Shadow maps of the present lights.
   LightSet cast_shadows() {
-    images.set_eta(eta);
+    images.set_eta(different_indices(eta));
     LightSet set(lights, bounds, &images);
     irradiance_passes.clear();
     if (const PassStats drawn = shadows.update(mesh, set); drawn.count > 0) irradiance_passes.push_back(drawn);
@@ -176,11 +176,11 @@ struct Engine::Implementation {
     simulation->set_beams(set.beams);
     if (set.environments > 0) {
       if (!hidden) hidden.emplace(device, graph);
-      irradiance_passes.push_back(hidden->run(*simulation, shadows, set.environments, eta));
+      irradiance_passes.push_back(hidden->run(*simulation, shadows, set.environments));
     }
     for (std::uint32_t level = 0; level < simulation->level_count(); ++level) {
       add(irradiance_passes,
-          irradiance.run(simulation->level(level), level, shadows, eta, hidden ? hidden->hidden(level) : 0, rough));
+          irradiance.run(simulation->level(level), level, shadows, hidden ? hidden->hidden(level) : 0, rough));
     }
     simulation->irradiance_changed();
     irradiance_stale = false;
@@ -190,7 +190,7 @@ struct Engine::Implementation {
   // Of the report, which is of a correction at rest.
   void state_light_error(const SolveOptions& wanted) {
     const LightRoom room = simulation->light_room(wanted);
-    light_passes = {light_samples.run(simulation->level(0), shadows, room, eta)};
+    light_passes = {light_samples.run(simulation->level(0), shadows, room)};
     simulation->state_light_error(wanted, *report);
   }
 
@@ -212,7 +212,7 @@ struct Engine::Implementation {
     if (shadows_stale) cast_shadows();
     SolveReport found;
     found.method = Method::shortest_path;
-    found.path = paths.solve(mesh, moved ? &motion.rest() : nullptr, shadows, eta, wanted.path);
+    found.path = paths.solve(mesh, moved ? &motion.rest() : nullptr, shadows, eta[0], wanted.path);
     return found;
   }
 
@@ -321,7 +321,7 @@ struct Engine::Implementation {
       add_all(rasteriser.run(PathInput{.mesh = mesh,
                                        .field = paths.field(),
                                        .shadows = shadows,
-                                       .eta = eta,
+                                       .eta = eta[0],
                                        .roughness = roughness(render),
                                        .placed_roughness = there},
                              camera, render.width, render.height));
@@ -341,7 +341,6 @@ struct Engine::Implementation {
                                        .vertex_exitance = simulation->vertex_exitance(),
                                        .vertex_unscattered = simulation->vertex_unscattered(),
                                        .shadows = shadows,
-                                       .eta = eta,
                                        .roughness = roughness(render),
                                        .placed_roughness = there,
                                        .gather = view_rays ? &*view_rays : nullptr},

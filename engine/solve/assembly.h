@@ -1,9 +1,9 @@
 // Records the passes that fill an operator with values.
 #pragma once
 
-#include "engine/optics/boundary.h"
 #include "engine/solve/level_buffers.h"
 #include "engine/solve/operator_buffers.h"
+#include "engine/solve/refractions.h"
 #include "engine/solve/workspace.h"
 
 namespace quadgraph {
@@ -25,21 +25,21 @@ void record_edits(Workspace& work, const LevelBuffers& level, const device::Buff
                   const device::Buffer* depth, float spacing, std::uint32_t count);
 
 // `even`: level.optical is the same everywhere, which takes less time.
-void record_assembly(Workspace& work, const LevelBuffers& level, Method method, const Boundary& boundary, bool even,
-                     OperatorBuffers& op);
+void record_assembly(Workspace& work, const LevelBuffers& level, Method method, const BodyBoundaries& boundaries,
+                     bool even, OperatorBuffers& op);
 
 // What keeps the steps of a solver from growing: record_damping or record_majorant.
 enum class StepBound { none, damping, majorant };
 
-// record_assembly, unless op has rows of these coefficients and this boundary, and what `bound` asks for.
-void record_rows(Workspace& work, const LevelBuffers& level, Method method, const Boundary& boundary, bool even,
+// record_assembly, unless op has rows of these coefficients and boundaries, and what `bound` asks for.
+void record_rows(Workspace& work, const LevelBuffers& level, Method method, const BodyBoundaries& boundaries, bool even,
                  StepBound bound, OperatorBuffers& op);
 
 // The scale of the whole solve, from q of the finest level.
 void record_scale(Workspace& work, const LevelBuffers& finest);
 
 // b of the diffuse source, and its norm.
-void record_diffuse_load(Workspace& work, const LevelBuffers& level, Method method, const Boundary& boundary,
+void record_diffuse_load(Workspace& work, const LevelBuffers& level, Method method, const BodyBoundaries& boundaries,
                          OperatorBuffers& op);
 
 // b of fem where light is scattered at the surface itself, and its norm. q: address of what is, W/mm^2, vec3 per face.
@@ -50,7 +50,5 @@ void record_damping(Workspace& work, Method method, OperatorBuffers& op);
 
 // The blocks that the smoother of cycles divides by (MajorantPush); fem only.
 void record_majorant(Workspace& work, OperatorBuffers& op);
-
-gpu::Boundary on_device(const Boundary& boundary);
 
 }  // namespace quadgraph

@@ -8,7 +8,6 @@
 #include "engine/device/commands.h"
 #include "engine/file/geometry.h"
 #include "engine/optics/depth.h"
-#include "engine/optics/fresnel.h"
 #include "engine/optics/material.h"
 #include "engine/optics/model.h"
 #include "engine/reference/operator.h"
@@ -28,8 +27,9 @@ device::Buffer room(device::Device& device, std::uint32_t number, std::uint64_t 
 
 }  // namespace
 
-Coefficients::Coefficients(device::Device& device, std::span<const Level> rest)
+Coefficients::Coefficients(device::Device& device, std::span<const Level> rest, Refractions& refractions)
     : device_(device),
+      refractions_(refractions),
       rest_(rest),
       given_(rest.size()),
       depth_(rest.size()),
@@ -51,22 +51,21 @@ void Coefficients::set(const gpu::Material& material) {
   given_elsewhere_.clear();
   for (device::Buffer& given : given_) given = {};
   changed();
-  eta_ = material.eta;
+  refractions_.set({&material.eta, 1});
   std::fill(albedo_.begin(), albedo_.end(), least_albedo(material));
   rounding_ = quadgraph::packed_rounding(material, spacing(0));
 }
 
-void Coefficients::set(std::uint32_t number, std::span<const gpu::Optical> optical, float eta,
+void Coefficients::set(std::uint32_t number, std::span<const gpu::Optical> optical, std::span<const float> eta,
                        std::span<const SurfaceSample> samples, std::span<const gpu::Optical> elsewhere) {
   check_optical(optical, rest_[number].node_count());
   if (!elsewhere.empty()) check_optical(elsewhere, rest_[number].tet_count());
-  check_eta(static_cast<double>(eta));
+  refractions_.set(eta);
   if (material_) std::fill(albedo_.begin(), albedo_.end(), std::nullopt);
   material_.reset();
   angles_ = {};
   device::rewrite(device_, optical, "material/level " + std::to_string(number) + " given", given_[number]);
   changed();
-  eta_ = eta;
   albedo_[number] = least_albedo(optical);
   if (number == 0) given_elsewhere_.assign(elsewhere.begin(), elsewhere.end());
   if (number == 0) rounding_ = quadgraph::packed_rounding(optical, spacing(0));
@@ -151,7 +150,11 @@ Model Coefficients::resolve(Workspace& work, Model wanted, Method method, Source
     }
     least = edited_->albedo;
   }
-  return resolve_model(wanted, method, source, least, static_cast<double>(eta_));
+  Model model = Model::diffusion;
+  for (const float eta : refractions_.eta()) {
+    model = std::max(model, resolve_model(wanted, method, source, least, static_cast<double>(eta)));
+  }
+  return model;
 }
 
 double Coefficients::packed_rounding(Model model) const {

@@ -11,21 +11,24 @@
 #include "engine/reference/resolution.h"
 #include "engine/solve/assembly.h"
 #include "engine/solve/level_buffers.h"
+#include "engine/solve/refractions.h"
 #include "engine/solve/workspace.h"
 
 namespace quadgraph {
 
 class Coefficients {
  public:
-  // `rest`, the levels of the file, must stay alive.
-  Coefficients(device::Device& device, std::span<const Level> rest);
+  // `rest`, the levels of the file, and `refractions`, which get the indices that come with coefficients, must stay
+  // alive.
+  Coefficients(device::Device& device, std::span<const Level> rest, Refractions& refractions);
 
   // Throws InputError as check_material does.
   void set(const gpu::Material& material);
 
   // Takes the coefficients of level `number`, and notes those at `samples`. `elsewhere`: those of the finest level at
-  // points_in_tets; none where they are not known. Throws InputError on a wrong size or value.
-  void set(std::uint32_t number, std::span<const gpu::Optical> optical, float eta,
+  // points_in_tets; none where they are not known. eta: as Refractions::set. Throws InputError on a wrong size or
+  // value.
+  void set(std::uint32_t number, std::span<const gpu::Optical> optical, std::span<const float> eta,
            std::span<const SurfaceSample> samples, std::span<const gpu::Optical> elsewhere);
 
   // Edits of the material or the arrays, also of those that are set later. Throws InputError naming the edit and as
@@ -34,8 +37,6 @@ class Coefficients {
 
   // Throws InputError if there are none, or not for every level.
   void check() const;
-
-  float eta() const { return eta_; }
 
   // By which angles light scatters, until the next coefficients are set.
   void set(const ScatteringAngles& angles) { angles_ = angles; }
@@ -86,6 +87,7 @@ class Coefficients {
   float spacing(std::uint32_t number);
 
   device::Device& device_;
+  Refractions& refractions_;
   std::span<const Level> rest_;
   std::optional<gpu::Material> material_;
   ScatteringAngles angles_;
@@ -96,8 +98,7 @@ class Coefficients {
   std::vector<device::Buffer> depth_buffers_;
   std::vector<std::optional<float>> spacing_;  // mm, of the nodes of every level, computed at first use
   Extent extent_ = Extent::one;
-  std::optional<Extent> evaluated_;  // the present coefficients, there
-  float eta_ = 1;
+  std::optional<Extent> evaluated_;             // the present coefficients, there
   std::vector<std::optional<double>> albedo_;   // the least one of every level, before edits
   glm::vec2 rounding_{1};                       // gpu::packed_rounding of the finest one, before edits
   device::Buffer measured_, measured_on_host_;  // of edited coefficients

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 
-#include "engine/optics/fresnel.h"
 #include "engine/reference/exchange.h"
 #include "engine/reference/sky.h"
 #include "interface/exchange/exchange.comp.h"
@@ -93,18 +92,17 @@ void InterReflection::make_room(Workspace& work, const std::vector<LevelBuffers>
   irradiance_ = std::move(irradiance);
 }
 
-void InterReflection::record_enter(Workspace& work, const LevelBuffers& level, const device::Buffer& irradiance,
-                                   double transmitted) {
+void InterReflection::record_enter(Workspace& work, const LevelBuffers& level, const device::Buffer& irradiance) {
   const gpu::ExchangeEnterPush push{.vertices = level.vertices.address(),
                                     .faces = level.faces.address(),
+                                    .face_kinds = level.face_kind.address(),
                                     .q = level.q.address(),
                                     .irradiance = irradiance.address(),
                                     .beam_q = level.beam_q.address() + level.beam_again(),
                                     .factor = factor_.address(),
                                     .state = state_.address(),
                                     .reduction = work.reduction.address(),
-                                    .count = level.face_count,
-                                    .transmitted = static_cast<float>(transmitted)};
+                                    .count = level.face_count};
   work.recorder.dispatch(work.passes.of(shader::exchange_enter), push, level.face_count, "exchange",
                          level.face_count * (face_bytes + 5 * vec3_bytes));
 }
@@ -120,16 +118,15 @@ void InterReflection::record_none(Workspace& work, const std::vector<LevelBuffer
   work.recorder.fill(factor_, std::bit_cast<std::uint32_t>(1.0f));  // of what may never have been written
   for (std::uint32_t i = 0; i <= *level_; ++i) {
     work.recorder.fill(irradiance_[i], 0);
-    record_enter(work, levels[i], irradiance_[i], 1);
+    record_enter(work, levels[i], irradiance_[i]);
   }
   work.recorder.fill(state_, 0);
 }
 
-void InterReflection::record_bounce(Workspace& work, const Solved& solved, double eta) {
+void InterReflection::record_bounce(Workspace& work, const Solved& solved) {
   const LevelBuffers& level = solved.level;
   std::swap(before_, irradiance_.back());
   record_exitance(work, solved, phi_, exitance_, clip_);
-  const auto transmitted = static_cast<float>(diffuse_transmittance(eta));
   const gpu::ExchangePush push{.vertices = level.vertices.address(),
                                .faces = level.faces.address(),
                                .face_kinds = level.face_kind.address(),
@@ -143,26 +140,23 @@ void InterReflection::record_bounce(Workspace& work, const Solved& solved, doubl
                                .state = state_.address(),
                                .reduction = work.reduction.address(),
                                .count = level.face_count,
-                               .rays = static_cast<float>(matrix_->rays()),
-                               .transmitted = transmitted};
+                               .rays = static_cast<float>(matrix_->rays())};
   const std::uint64_t entries = graph_.levels()[*level_].seen.size() - level.face_count - 1;
   work.recorder.dispatch(work.passes.of(shader::exchange), push, level.face_count, "exchange",
                          level.face_count * (face_bytes + sizeof(glm::uvec2) + 3 * vec3_bytes) +
                              entries * (sizeof(std::uint32_t) + 2 * vec3_bytes));
-  record_enter(work, level, irradiance_.back(), transmitted);
+  record_enter(work, level, irradiance_.back());
   count_ = std::min(count_ + 1, max_bounces);
   work.recorder.copy(state_, states_on_host_, sizeof(gpu::ExchangeState), count_ * sizeof(gpu::ExchangeState));
   any_ = true;
 }
 
-void InterReflection::record_beam(Workspace& work, const std::vector<LevelBuffers>& levels, std::uint32_t number,
-                                  double eta) {
+void InterReflection::record_beam(Workspace& work, const std::vector<LevelBuffers>& levels, std::uint32_t number) {
   make_room(work, levels);
   const LevelBuffers& level = levels[number];
-  const double transmitted = diffuse_transmittance(eta);
   if (number == *level_) {
     work.recorder.fill(factor_, std::bit_cast<std::uint32_t>(1.0f));
-    return record_enter(work, level, irradiance_[number], transmitted);
+    return record_enter(work, level, irradiance_[number]);
   }
   const Finer& finer = finer_[number];
   const gpu::ExchangeFinerPush push{.vertices = level.vertices.address(),
@@ -176,11 +170,10 @@ void InterReflection::record_beam(Workspace& work, const std::vector<LevelBuffer
                                     .state = state_.address(),
                                     .reduction = work.reduction.address(),
                                     .count = level.face_count,
-                                    .width = finer.width,
-                                    .transmitted = static_cast<float>(transmitted)};
+                                    .width = finer.width};
   work.recorder.dispatch(work.passes.of(shader::exchange_finer), push, level.face_count, "exchange",
                          level.face_count * (face_bytes + finer.width * (8 + vec3_bytes) + vec3_bytes));
-  record_enter(work, level, irradiance_[number], transmitted);
+  record_enter(work, level, irradiance_[number]);
 }
 
 void InterReflection::begin() {

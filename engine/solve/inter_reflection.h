@@ -56,11 +56,11 @@ class InterReflection {
   void record_none(Workspace& work, const std::vector<LevelBuffers>& levels);
 
   // One bounce, from M of `solved` on the level with the exchange, and from what entered again so far.
-  void record_bounce(Workspace& work, const Solved& solved, double eta);
+  void record_bounce(Workspace& work, const Solved& solved);
 
   // The beam of level `number`: on the level with the exchange what entered again so far; on finer ones the same, from
   // the next coarser level, whose beam comes first.
-  void record_beam(Workspace& work, const std::vector<LevelBuffers>& levels, std::uint32_t number, double eta);
+  void record_beam(Workspace& work, const std::vector<LevelBuffers>& levels, std::uint32_t number);
 
   // Whether light may have entered again since record_none.
   bool any() const { return any_; }
@@ -82,7 +82,7 @@ class InterReflection {
     std::uint32_t width = 0;
   };
 
-  void record_enter(Workspace& work, const LevelBuffers& level, const device::Buffer& irradiance, double transmitted);
+  void record_enter(Workspace& work, const LevelBuffers& level, const device::Buffer& irradiance);
 
   const QuadGraph& graph_;
   std::optional<std::uint32_t> level_;

@@ -15,7 +15,7 @@ struct LevelBuffers {
   device::Buffer tets;       // uvec4
   device::Buffer faces;      // uvec3
   device::Buffer face_tets;  // uint
-  device::Buffer face_kind;  // uint; 0 open, 1 reflecting
+  device::Buffer face_kind;  // uint; kinds of the faces (shaders/shared/refraction.h)
   // The open faces at surface vertex v: face_incidence[k], k from face_offset[v] to face_offset[v + 1].
   device::Buffer face_offset, face_incidence;
   device::Buffer links;    // uvec4; for the graph methods, made at first use

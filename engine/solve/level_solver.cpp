@@ -110,6 +110,7 @@ void LevelSolver::record_surface(const device::Buffer& x, const device::Buffer& 
   const gpu::SurfaceChangePush push{.x = x.address(),
                                     .to_phi = rows.to_phi.address(),
                                     .share = rows.surface_share.address(),
+                                    .boundaries = task_.boundaries,
                                     .before = before.address(),
                                     .scale = work_.scale.address(),
                                     .state = rows.state.address(),
@@ -127,8 +128,7 @@ void LevelSolver::record_surface(const device::Buffer& x, const device::Buffer& 
                                     .slow_rate = looks.slow_rate,
                                     // Far from the surface a jump of kappa can hide errors from it for long.
                                     .by_residual = rules_.step == Step::conjugate_gradients && !rules_.cycles ? 1u : 0u,
-                                    .tolerance = task_.fixed ? 0.0f : static_cast<float>(task_.tolerance),
-                                    .boundary = on_device(task_.boundary)};
+                                    .tolerance = task_.fixed ? 0.0f : static_cast<float>(task_.tolerance)};
   const std::uint64_t bytes =
       rows.surface_count * (rows.field_bytes() + sizeof(gpu::SurfaceShare) + 2 * std::uint64_t{sizeof(glm::vec3)});
   if (what == gpu::SURFACE_CHANGE) {

@@ -4,7 +4,6 @@
 
 #include <optional>
 
-#include "engine/optics/boundary.h"
 #include "engine/reference/solution.h"
 #include "engine/solve/assembly.h"
 #include "engine/solve/multigrid.h"
@@ -16,13 +15,13 @@ namespace quadgraph {
 // What a solve of one level is to do.
 struct LevelTask {
   SolverKind solver = SolverKind::fmg_pcg;  // never automatic; in one with cycles, the level may be any
-  Boundary boundary{};
-  double tolerance = 1e-3;           // of the algebraic error
-  bool fixed = false;                // max_iterations are done whatever is left
-  bool start = false;                // only to start the next finer level: never too little
-  std::uint32_t max_iterations = 0;  // in all
-  std::uint32_t smoothing = 1;       // of a cycle
-  std::uint32_t active_layers = 0;   // of a relaxation: rows below these layers stay as they are; 0: none do
+  std::uint64_t boundaries = 0;             // address of BodyBoundaries::on_device
+  double tolerance = 1e-3;                  // of the algebraic error
+  bool fixed = false;                       // max_iterations are done whatever is left
+  bool start = false;                       // only to start the next finer level: never too little
+  std::uint32_t max_iterations = 0;         // in all
+  std::uint32_t smoothing = 1;              // of a cycle
+  std::uint32_t active_layers = 0;          // of a relaxation: rows below these layers stay as they are; 0: none do
 };
 
 // How a solver's looks at the surface become an estimate of what is left, and when it counts as stalled.

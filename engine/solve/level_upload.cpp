@@ -30,9 +30,19 @@ Transposed transposed(const Transfer& transfer, std::uint32_t columns) {
   return back;
 }
 
+std::vector<std::uint32_t> face_words(const Level& level, const Refractions& refractions) {
+  std::vector<std::uint32_t> words = refractions.head(level.face_count());
+  for (std::uint32_t f = 0; f < level.face_count(); ++f) {
+    const std::uint32_t kind = level.reflecting(f) ? gpu::FACE_REFLECTING : gpu::FACE_OPEN;
+    words.push_back(kind | level.body_of_face(f) << gpu::FACE_BODY);
+  }
+  return words;
+}
+
 }  // namespace
 
-LevelBuffers upload_level(device::Device& device, const Level& level, std::uint32_t number) {
+LevelBuffers upload_level(device::Device& device, const Level& level, std::uint32_t number,
+                          const Refractions& refractions) {
   const std::string prefix = "geometry/level " + std::to_string(number) + " ";
   LevelBuffers buffers;
   buffers.vertex_count = level.vertex_count();
@@ -44,9 +54,7 @@ LevelBuffers upload_level(device::Device& device, const Level& level, std::uint3
   buffers.tets = device::upload(device, level.tets, prefix + "tets");
   buffers.faces = device::upload(device, level.faces, prefix + "faces");
   buffers.face_tets = device::upload(device, level.face_tets, prefix + "face_tets");
-  const std::vector<std::uint32_t> all_open(level.face_kinds.empty() ? level.faces.size() : 0, face_open);
-  const std::span<const std::uint32_t> kinds = level.face_kinds.empty() ? all_open : level.face_kinds;
-  buffers.face_kind = device::upload(device, kinds, prefix + "face_kind");
+  buffers.face_kind = device::upload<std::uint32_t>(device, face_words(level, refractions), prefix + "face_kind");
   const FaceIncidence incidence = face_incidence(level);
   buffers.face_offset = device::upload<std::uint32_t>(device, incidence.offset, prefix + "face_offset");
   buffers.face_incidence = device::upload<std::uint32_t>(device, incidence.face, prefix + "face_incidence");
@@ -58,11 +66,12 @@ LevelBuffers upload_level(device::Device& device, const Level& level, std::uint3
   return buffers;
 }
 
-std::vector<LevelBuffers> upload_levels(device::Device& device, const std::vector<Level>& levels) {
+std::vector<LevelBuffers> upload_levels(device::Device& device, const std::vector<Level>& levels,
+                                        const Refractions& refractions) {
   std::vector<LevelBuffers> buffers;
   const auto sky = sky_of_levels(levels);
   for (std::uint32_t i = 0; i < levels.size(); ++i) {
-    buffers.push_back(upload_level(device, levels[i], i));
+    buffers.push_back(upload_level(device, levels[i], i, refractions));
     buffers[i].sky = device::upload<float>(device, sky[i], "geometry/sky");
   }
   return buffers;

@@ -6,14 +6,18 @@
 #include "engine/base/solve_options.h"
 #include "engine/file/graph.h"
 #include "engine/solve/level_buffers.h"
+#include "engine/solve/refractions.h"
 
 namespace quadgraph {
 
-// Geometry of level `number` without what is made at first use; q is zero.
-LevelBuffers upload_level(device::Device& device, const Level& level, std::uint32_t number);
+// Geometry of level `number` without what is made at first use; q is zero. `refractions`, of its bodies, must outlive
+// it.
+LevelBuffers upload_level(device::Device& device, const Level& level, std::uint32_t number,
+                          const Refractions& refractions);
 
 // All levels of a file, with the shares of the sky that their faces see.
-std::vector<LevelBuffers> upload_levels(device::Device& device, const std::vector<Level>& levels);
+std::vector<LevelBuffers> upload_levels(device::Device& device, const std::vector<Level>& levels,
+                                        const Refractions& refractions);
 
 // Links and nodes, unless they are there.
 void upload_graph(device::Device& device, const Level& level, std::uint32_t number, LevelBuffers& buffers);

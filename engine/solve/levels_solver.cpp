@@ -44,7 +44,7 @@ LevelsSolver::LevelsSolver(const SolveParts& parts, const OperatorKey& key, cons
     : parts_(parts),
       key_(key),
       options_(options),
-      boundary_(boundary_of(key.method, options.source, key.model, parts.coefficients.eta())),
+      boundaries_(parts.refractions.boundaries(key.method, options.source, key.model)),
       solvers_(parts.operators.count(key)) {
   report_.method = key.method;
   report_.solver = solver;
@@ -100,16 +100,11 @@ bool LevelsSolver::bounces_on(std::uint32_t level) const {
 
 Solved LevelsSolver::solved(std::uint32_t level) {
   const bool buried = options_.source == Source::buried;
-  return {parts_.levels[level],
-          op(level),
-          key_.method,
-          boundary_,
-          parts_.coefficients.eta(),
-          buried ? &parts_.walks[level] : nullptr};
+  return {parts_.levels[level], op(level), key_.method, boundaries_, buried ? &parts_.walks[level] : nullptr};
 }
 
 WalkTask LevelsSolver::walk_task() const {
-  return {key_.method, parts_.coefficients.eta(), parts_.coefficients.even(), options_.mean_rays};
+  return {key_.method, parts_.coefficients.even(), options_.mean_rays};
 }
 
 void LevelsSolver::record_load(std::uint32_t level) {
@@ -122,7 +117,7 @@ void LevelsSolver::record_load(std::uint32_t level) {
     walk.record(parts_.work, buffers, parts_.beams, walk_task());
     walk.record_right_hand_side(parts_.work, buffers, key_.method, rows);
   } else {
-    record_diffuse_load(parts_.work, buffers, key_.method, boundary_, rows);
+    record_diffuse_load(parts_.work, buffers, key_.method, boundaries_, rows);
   }
   rows.loaded = load;
 }
@@ -137,16 +132,16 @@ void LevelsSolver::record_load_again(std::uint32_t level) {
 }
 
 void LevelsSolver::record_setup(std::uint32_t level) {
-  record_rows(parts_.work, parts_.levels[level], key_.method, boundary_, parts_.coefficients.even(),
+  record_rows(parts_.work, parts_.levels[level], key_.method, boundaries_, parts_.coefficients.even(),
               rules_of(report_.solver).bound, op(level));
 }
 
 void LevelsSolver::record_light(std::uint32_t level) {
-  if (!op(level).weighed) record_surface_share(parts_.work, parts_.levels[level], key_.method, boundary_, op(level));
+  if (!op(level).weighed) record_surface_share(parts_.work, parts_.levels[level], key_.method, boundaries_, op(level));
   op(level).weighed = true;
   record_load(level);
   if (!bounces_reach(level)) return;
-  parts_.exchange.record_beam(parts_.work, parts_.levels, level, parts_.coefficients.eta());
+  parts_.exchange.record_beam(parts_.work, parts_.levels, level);
   if (parts_.exchange.any()) record_load_again(level);
 }
 
@@ -179,7 +174,9 @@ void LevelsSolver::approach(std::uint32_t level) {
 
 void LevelsSolver::set_solver(std::uint32_t level) {
   const bool last = level == finest_;
-  LevelTask task{.solver = report_.solver, .boundary = boundary_, .max_iterations = options_.max_iterations};
+  LevelTask task{.solver = report_.solver,
+                 .boundaries = boundaries_.on_device.address(),
+                 .max_iterations = options_.max_iterations};
   task.tolerance = algebraic_wanted();
   task.smoothing = options_.smoothing > 0 ? options_.smoothing : rules_of(report_.solver).smoothing;
   task.start = !last && cycles();
@@ -235,7 +232,7 @@ bool LevelsSolver::bounced_enough() const {
 void LevelsSolver::bounce(std::uint32_t bounces) {
   const std::uint32_t level = *parts_.exchange.level();
   for (std::uint32_t left = bounces; left > 0; --left) {
-    parts_.exchange.record_bounce(parts_.work, solved(level), parts_.coefficients.eta());
+    parts_.exchange.record_bounce(parts_.work, solved(level));
     record_load_again(level);
     iterate(level);
     if (!cycles() && bounced_enough()) return;

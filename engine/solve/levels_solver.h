@@ -26,6 +26,7 @@ struct SolveParts {
   Operators& operators;
   SurfaceResults& results;
   Coefficients& coefficients;
+  Refractions& refractions;
   InterReflection& exchange;
   bool& scaled;                            // the scale is that of the present q
   std::span<const Resolution> resolution;  // per level; empty where nothing is known of it
@@ -79,7 +80,7 @@ class LevelsSolver {
   SolveParts parts_;
   OperatorKey key_;
   const SolveOptions& options_;
-  Boundary boundary_;
+  const BodyBoundaries& boundaries_;
   SolveReport report_;
   std::uint32_t finest_ = 0;  // level that is solved last, as far as is known
   std::uint32_t next_ = 0;    // level to be solved next; all coarser ones have been

@@ -3,8 +3,7 @@
 #include <cmath>
 
 namespace quadgraph {
-glm::dvec3 share_of_surface_light(const Energy& energy, const Boundary& boundary,
-                                  std::span<const gpu::Optical> optical) {
+glm::dvec3 share_of_surface_light(const Energy& energy, double k11, std::span<const gpu::Optical> optical) {
   glm::dvec3 sigma_a{0}, sigma_t{0};  // sums
   for (const gpu::Optical& at : optical) {
     sigma_a += glm::dvec3(at.sigma_a);
@@ -14,7 +13,7 @@ glm::dvec3 share_of_surface_light(const Energy& energy, const Boundary& boundary
   for (int c = 0; c < 3; ++c) {
     if (!(energy.entered[c] > 0)) continue;
     const double inwards = sigma_t[c] > 0 ? std::sqrt(sigma_a[c] / (3 * sigma_t[c])) : 0;  // flux over phi
-    share[c] = energy.scattered_out[c] / energy.entered[c] * (1 + inwards / boundary.k11);
+    share[c] = energy.scattered_out[c] / energy.entered[c] * (1 + inwards / k11);
   }
   return share;
 }

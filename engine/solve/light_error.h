@@ -31,10 +31,9 @@ class LightError {
 };
 
 // What counts of light that is scattered at the surface, per channel: what leaves of it in a deep body, and what has
-// left of that of the lights. boundary: of the diffusion; optical: all coefficients of the
-// body, which are taken in the mean.
-glm::dvec3 share_of_surface_light(const Energy& energy, const Boundary& boundary,
-                                  std::span<const gpu::Optical> optical);
+// left of that of the lights. k11: the least of the diffusion in any body; optical: all coefficients of the
+// bodies, which are taken in the mean.
+glm::dvec3 share_of_surface_light(const Energy& energy, double k11, std::span<const gpu::Optical> optical);
 
 // Puts it into a report: as a part of the error, and into all of that, where all is known.
 void add_light_error(SolveReport& report, const ErrorEstimate& light);

@@ -36,7 +36,7 @@ OperatorBuffers::OperatorBuffers(device::Device& device, const Level& level, std
     return device::Buffer(device, bytes, device::Place::device, purpose + prefix_ + name);
   };
   const auto block = [&](const char* name) {
-    const std::uint64_t head = compact_rows() ? sizeof(glm::vec3) : 0;
+    const std::uint64_t head = compact_rows() ? sizeof(gpu::Sp3Head) : 0;
     return buffer(head + count * block_bytes(), "operator/", name);
   };
   const auto field = [&](const char* name) { return buffer(count * field_bytes(), "solver/", name); };

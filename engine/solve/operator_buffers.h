@@ -59,12 +59,12 @@ struct OperatorBuffers {
   bool measured = false;                  // they belong to the present vertices
   bool moved = false;                     // since these buffers were made
 
-  std::optional<Boundary> assembled;  // for the present material, with this boundary
-  bool damped = false;                // `damping` belongs to these rows
-  bool majorised = false;             // `majorant` does
-  std::optional<Load> loaded;         // b is that of the present light and rows, by this way in
-  bool weighed = false;               // surface_share belongs to the present light and vertices
-  bool solved = false;                // x has been solved for, if for other light or coefficients
+  std::optional<std::vector<Boundary>> assembled;  // for the present material, with these boundaries of bodies
+  bool damped = false;                             // `damping` belongs to these rows
+  bool majorised = false;                          // `majorant` does
+  std::optional<Load> loaded;                      // b is that of the present light and rows, by this way in
+  bool weighed = false;                            // surface_share belongs to the present light and vertices
+  bool solved = false;                             // x has been solved for, if for other light or coefficients
 
   // Uploads the rows; values are undefined until assembled.
   OperatorBuffers(device::Device& device, const Level& level, std::uint32_t index, Method method, Model model,

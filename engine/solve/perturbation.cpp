@@ -45,13 +45,13 @@ std::vector<glm::vec3> Perturbation::exitance(const PerturbedSolution& solution,
   work.recorder.fill(op.x, 0);
   const SolverKind kind = possible_solver(solution.operators, solution.key, SolverKind::fmg_pcg).solver;
   const LevelTask task{.solver = kind,
-                       .boundary = solution.boundary,
+                       .boundaries = solution.boundaries.on_device.address(),
                        .tolerance = share_left,
                        .max_iterations = rules_of(kind).cycles ? most_cycles : most_steps,
                        .smoothing = rules_of(kind).smoothing};
   LevelSolver solver(work, solution.operators, solution.key, 0, task);
   solver.run();
-  record_exitance(work, {solution.level, op, Method::fem, solution.boundary, 1, nullptr}, phi_, exitance_, clip_);
+  record_exitance(work, {solution.level, op, Method::fem, solution.boundaries, nullptr}, phi_, exitance_, clip_);
   work.recorder.submit();
   std::swap(op.b, load_);
   std::swap(op.x, change_);

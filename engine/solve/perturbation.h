@@ -18,11 +18,11 @@ namespace quadgraph {
 struct PerturbedSolution {
   Workspace& work;
   const LevelBuffers& level;
-  Operators& operators;       // those of `key` have rows of the present coefficients on all levels
-  OperatorKey key;            // fem and diffusion
-  const Boundary& boundary;   // of that operator
-  const SurfaceField& field;  // position and normal are not looked at
-  float unlit = 0;            // W/mm^2, as of gpu::Scale
+  Operators& operators;              // those of `key` have rows of the present coefficients on all levels
+  OperatorKey key;                   // fem and diffusion
+  const BodyBoundaries& boundaries;  // of that operator
+  const SurfaceField& field;         // position and normal are not looked at
+  float unlit = 0;                   // W/mm^2, as of gpu::Scale
 };
 
 class Perturbation {

@@ -11,11 +11,6 @@ Certifier& made(std::optional<Certifier>& certifier, device::Device& device, con
   return certifier ? *certifier : certifier.emplace(device, shape.levels()[0]);
 }
 
-// Of the correction's operator.
-Boundary diffusion_boundary(float eta) {
-  return boundary_of(Method::fem, Source::buried, Model::diffusion, double{eta});
-}
-
 }  // namespace
 
 Simulation::Simulation(device::Device& device, const QuadGraph& graph)
@@ -50,6 +45,11 @@ void Simulation::set_angles(const ScatteringAngles& angles) {
 
 void Simulation::set_optical(std::uint32_t level, std::span<const gpu::Optical> optical, float eta,
                              std::span<const gpu::Optical> elsewhere) {
+  set_optical(level, optical, std::span(&eta, 1), elsewhere);
+}
+
+void Simulation::set_optical(std::uint32_t level, std::span<const gpu::Optical> optical, std::span<const float> eta,
+                             std::span<const gpu::Optical> elsewhere) {
   if (level >= level_count()) {
     throw InputError("level " + std::to_string(level) + " of optical: there are " + std::to_string(level_count()));
   }
@@ -62,9 +62,9 @@ void Simulation::set_edits(std::span<const Edit> edits) {
   implementation_->disassemble();
 }
 
-float Simulation::eta() const {
+std::span<const float> Simulation::eta() const {
   implementation_->coefficients.check();
-  return implementation_->coefficients.eta();
+  return implementation_->refractions.eta();
 }
 
 void Simulation::set_beams(std::span<const gpu::Beam> beams) {
@@ -124,44 +124,6 @@ SolveReport Simulation::solve(const SolveOptions& options, const std::function<v
   return report;
 }
 
-void Simulation::Implementation::correction_room(std::uint32_t points) {
-  operators.rounded(correction_key, coefficients.packed_rounding(correction_key.model));
-  operators.create(device, shape.levels(), correction_key, coefficients.even(), false);
-  if (!correction) correction.emplace(device, shape.levels()[0]);
-  correction->make_room(device, points);
-  gather_room().make_room_corrected(device, shape.levels()[0]);
-}
-
-void Simulation::Implementation::with_solution(const Boundary& boundary,
-                                               const std::function<void(const PerturbedSolution&)>& use) {
-  SurfaceField field = surface_of(shape.present(device, levels[0]));
-  field.q = device::download<glm::vec3>(device, levels[0].q);
-  field.exitance = device::download<glm::vec3>(device, results.exitance());
-  use({.work = work,
-       .level = levels[0],
-       .operators = operators,
-       .key = correction_key,
-       .boundary = boundary,
-       .field = field,
-       .unlit = device::download<gpu::Scale>(device, work.scale)[0].unlit});
-}
-
-CorrectedPatches Simulation::Implementation::measure_patches(const Boundary& boundary) {
-  auto [a, b] = correction->exitance_by_halves(device);
-  std::vector<glm::vec3> noise(a.size());
-  CorrectedPatches patches;
-  with_solution(boundary, [&](const PerturbedSolution& solution) {
-    for (std::size_t f = 0; f < noise.size(); ++f) {
-      noise[f] = 0.5f * (a[f] - b[f]);
-      a[f] -= solution.field.exitance[f];
-      b[f] -= solution.field.exitance[f];
-    }
-    patches = {.change = perturbation->relative(solution, a, b, glm::dvec3(1)),
-               .noise = perturbation->relative(solution, noise, noise, glm::dvec3(1))};
-  });
-  return patches;
-}
-
 LightRoom Simulation::light_room(const SolveOptions& options) {
   Implementation& self = *implementation_;
   return {self.beams.on_device, self.light_error->difference(), self.tree->ref(), entering_rays(options.mean_rays),
@@ -170,7 +132,8 @@ LightRoom Simulation::light_room(const SolveOptions& options) {
 
 void Simulation::state_light_error(const SolveOptions& options, SolveReport& report) {
   Implementation& self = *implementation_;
-  const glm::dvec3 share = share_of_surface_light(report.energy, diffusion_boundary(eta()), self.optical_at(0));
+  const double k11 = self.correction_boundaries().least_k11();
+  const glm::dvec3 share = share_of_surface_light(report.energy, k11, self.optical_at(0));
   perturb(options, report, [&](const PerturbedSolution& solution) {
     add_light_error(report, self.light_error->estimate(*self.perturbation, solution, share));
   });
@@ -214,7 +177,7 @@ void Simulation::certify(const SolveOptions& options, SolveReport& report, const
 void Simulation::perturb(const SolveOptions& options, SolveReport& report,
                          const std::function<void(const PerturbedSolution&)>& state) {
   Implementation& self = *implementation_;
-  self.with_solution(diffusion_boundary(eta()), state);
+  self.with_solution(self.correction_boundaries(), state);
   state_anew(report, options.error);
   self.passes = self.work.recorder.passes();
 }

@@ -74,6 +74,10 @@ class Simulation {
   void set_optical(std::uint32_t level, std::span<const gpu::Optical> optical, float eta,
                    std::span<const gpu::Optical> elsewhere = {});
 
+  // The same with an index of refraction for each body.
+  void set_optical(std::uint32_t level, std::span<const gpu::Optical> optical, std::span<const float> eta,
+                   std::span<const gpu::Optical> elsewhere = {});
+
   // By which angles light scatters, of what set_optical has set on all levels.
   void set_angles(const ScatteringAngles& angles);
 
@@ -81,8 +85,9 @@ class Simulation {
   // later. Throws InputError naming the edit and as check_edit.
   void set_edits(std::span<const Edit> edits);
 
-  // Index of refraction of what was set. Throws InputError before that, or if a level of set_optical is missing.
-  float eta() const;
+  // Indices of refraction of what was set, by body. Throws InputError before that, or if a level of set_optical is
+  // missing.
+  std::span<const float> eta() const;
 
   // The beams that light is made of, whose offsets need not be set. level.beam_q then has room for what they store;
   // whoever fills beam_q and q on the device calls irradiance_changed. Both are zero after a change of that room.

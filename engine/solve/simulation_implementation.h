@@ -35,6 +35,7 @@ struct Simulation::Implementation {
   device::Device& device;
   BodyShape shape;
   std::vector<PassStats> deformation_passes;
+  Refractions refractions;
   std::vector<LevelBuffers> levels;
   BeamBuffers beams;
   std::vector<SourceWalk> walks;  // one per level
@@ -52,7 +53,7 @@ struct Simulation::Implementation {
   std::optional<LightError> light_error;          // the same
   bool corrected = false;                         // the last solution is
   std::vector<gpu::Optical> corrected_optical;    // at the surface, of the last correction
-  double corrected_eta = 0;                       // the same
+  std::vector<float> corrected_eta;               // the same
   bool optical_changed = true;                    // since then
   std::vector<PassStats> passes;                  // of the last solve
   bool scaled = false;                            // the scale is that of the present q
@@ -64,10 +65,11 @@ struct Simulation::Implementation {
   Implementation(device::Device& context_in, const QuadGraph& graph_in)
       : device(context_in),
         shape(graph_in),
-        levels(upload_levels(context_in, graph_in.levels())),
+        refractions(context_in, static_cast<std::uint32_t>(std::max<std::size_t>(graph_in.bodies().size(), 1))),
+        levels(upload_levels(context_in, graph_in.levels(), refractions)),
         work(context_in, largest_dispatch()),
         results(context_in, levels[0]),
-        coefficients(context_in, graph_in.levels()),
+        coefficients(context_in, graph_in.levels(), refractions),
         exchange(graph_in) {
     for (std::uint32_t i = 0; i < levels.size(); ++i) walks.emplace_back(device, shape.levels()[i], i);
     light(std::vector{beam_along(std::nullopt)});
@@ -210,60 +212,24 @@ struct Simulation::Implementation {
     return report;
   }
 
-  // A correction goes on from what it knows where rays see much the same body.
-  void forget_other_material() {
-    if (!optical_changed) return;
-    std::vector<gpu::Optical> now = optical_at(0);
-    const double eta = static_cast<double>(coefficients.eta()), step = std::abs(eta - corrected_eta) / eta;
-    const bool another = std::max(extinction_change(corrected_optical, now), step) > most_carried;
-    another ? correction->forget() : correction->edited();
-    corrected_optical = std::move(now);
-    corrected_eta = eta;
-    optical_changed = false;
+  // Of the correction's operator.
+  const BodyBoundaries& correction_boundaries() {
+    return refractions.boundaries(correction_key.method, Source::buried, correction_key.model);
   }
+
+  // A correction goes on from what it knows where rays see much the same body.
+  void forget_other_material();
 
   // The operator of the correction on all levels, for the present coefficients.
-  void prepare_correction(const Boundary& boundary) {
-    for (std::uint32_t i = 0; i < operators.count(correction_key); ++i) {
-      OperatorBuffers& op = operators.at(correction_key, i);
-      record_rows(work, levels[i], Method::fem, boundary, coefficients.even(), StepBound::majorant, op);
-      if (!op.weighed) record_surface_share(work, levels[i], Method::fem, boundary, op);
-      op.weighed = true;
-    }
-  }
+  void prepare_correction(const BodyBoundaries& boundaries);
 
   // With the present results on the finest level, for as long as `use` runs.
-  void with_solution(const Boundary& boundary, const std::function<void(const PerturbedSolution&)>& use);
+  void with_solution(const BodyBoundaries& boundaries, const std::function<void(const PerturbedSolution&)>& use);
 
   // Before the results of the correction, at rest, are taken: the exitance is still that of the solve.
-  CorrectedPatches measure_patches(const Boundary& boundary);
+  CorrectedPatches measure_patches(const BodyBoundaries& boundaries);
 
-  void correct(const OperatorKey& key, const SolveOptions& options, const Check& check, SolveReport& report) {
-    const double eta = coefficients.eta();
-    const auto boundary_with = [&](Model model) { return boundary_of(Method::fem, Source::buried, model, eta); };
-    const Boundary boundary = boundary_with(Model::diffusion);
-    prepare_correction(boundary);
-    forget_other_material();
-    const Solved of_solve{levels[0], operators.at(key, 0), Method::fem, boundary_with(key.model), eta, &walks[0]};
-    const TransportParts transport{work, levels[0], beams, walks[0], gather->nearest(), *tree, report.inter_reflection};
-    const CorrectionParts parts{
-        transport, operators, boundary, of_solve, results, resolution_with(key.model).front().slow, check};
-    report.correction = correction->run(parts, options, {Method::fem, eta, coefficients.even(), options.mean_rays});
-    if (!options.warm) take_patches(*report.correction, measure_patches(boundary), options);
-    results.record_corrected(work, of_solve, correction->fluence(), correction->exitance(), report.correction->taken);
-    correction->record_taken(parts, *report.correction);
-    work.recorder.submit();
-    report.energy = results.energy();
-    const TransportPower power = correction->power(glm::dvec3(scale()), report.energy.scattered_out);
-    report.energy.entered = power.entered;
-    report.energy.absorbed += power.absorbed;
-    report.energy.unscattered_out = power.unscattered;
-    report.energy.re_entered = power.entered_again;
-    report.clipped = results.clipped();
-    state_corrected_error(report, resolution_with(key.model).front().corrected, options.mean_of);
-    state_missed(report, options.error);
-    report.model_warning.clear();
-  }
+  void correct(const OperatorKey& key, const SolveOptions& options, const Check& check, SolveReport& report);
 
   // Of the last solution.
   FirstMoment fluence() {
@@ -313,7 +279,7 @@ struct Simulation::Implementation {
   const std::vector<Resolution>& resolution_with(Model model) {
     std::vector<Resolution>& found = resolution[model];
     for (auto i = static_cast<std::uint32_t>(found.size()); i < levels.size(); ++i) {
-      found.push_back(resolution_of(shape.samples(i), optical_at(i), static_cast<double>(coefficients.eta()), model));
+      found.push_back(resolution_of(shape.samples(i), optical_at(i), refractions.eta(), model));
     }
     return found;
   }
@@ -324,14 +290,14 @@ struct Simulation::Implementation {
       const std::string inside = inside_warning(optical_at(report.finest), shape.edge(report.finest), shape.chord());
       report.mesh_warning += (report.mesh_warning.empty() || inside.empty() ? "" : "; ") + inside;
     }
-    report.model_warning =
-        model_warning(optical_at(0), static_cast<double>(coefficients.eta()), shape.chord(), source, report.model);
+    report.model_warning = model_warning(optical_at(0), refractions.eta(), shape.chord(), source, report.model);
   }
 
   SolveReport run(const OperatorKey& key, const SolveOptions& options, SolverKind solver) {
     std::span<const Resolution> known;
     if (key.method == Method::fem && options.source == Source::buried) known = resolution_with(key.model);
-    const SolveParts parts{work, levels, beams, walks, operators, results, coefficients, exchange, scaled, known};
+    const SolveParts parts{work,         levels,      beams,    walks,  operators, results,
+                           coefficients, refractions, exchange, scaled, known};
     return LevelsSolver(parts, key, options, solver).run();
   }
 
@@ -345,7 +311,7 @@ struct Simulation::Implementation {
     if (gather_room(); gathers_now == what) return *gather;
     work.recorder.clear();
     walks[0].record_cells(work, levels[0]);
-    const auto body = walks[0].body(levels[0], coefficients.eta(), coefficients.even());
+    const auto body = walks[0].body(levels[0], coefficients.even());
     GatherInput input{levels[0], fluence(), beams, results.vertex_exitance(), body, *tree};
     if (corrected) input.first.emplace(correction->first());
     what == Gather::single ? gather->record_single(work, input) : gather->record(work, input);
@@ -366,9 +332,8 @@ struct Simulation::Implementation {
     if (number >= levels.size() || !op.solved) {
       throw InputError("level " + std::to_string(number) + " of exitance: the last solve did not go over it");
     }
-    const Boundary boundary =
-        boundary_of(solved->method, solved_source, solved->model, static_cast<double>(coefficients.eta()));
-    return exitance_of(device, work, {levels[number], op, solved->method, boundary, coefficients.eta(), nullptr});
+    const BodyBoundaries& boundaries = refractions.boundaries(solved->method, solved_source, solved->model);
+    return exitance_of(device, work, {levels[number], op, solved->method, boundaries, nullptr});
   }
 
   glm::vec3 scale() const { return device::download<gpu::Scale>(device, work.scale)[0].scale; }

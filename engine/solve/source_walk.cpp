@@ -84,7 +84,7 @@ void SourceWalk::record_cells(Workspace& work, const LevelBuffers& level) {
                          level.tet_count * (sizeof(glm::uvec4) + 4 * vec3_bytes + 3 * sizeof(glm::vec4)));
 }
 
-gpu::BodyRef SourceWalk::body(const LevelBuffers& level, double eta, bool even) const {
+gpu::BodyRef SourceWalk::body(const LevelBuffers& level, bool even) const {
   return {.vertices = level.vertices.address(),
           .tets = level.tets.address(),
           .cells = cells_.address(),
@@ -94,8 +94,7 @@ gpu::BodyRef SourceWalk::body(const LevelBuffers& level, double eta, bool even) 
           .optical = level.optical.address(),
           .tet_count = level.tet_count,
           .face_count = level.face_count,
-          .flags = even ? gpu::BODY_EVEN : 0u,
-          .eta = static_cast<float>(eta)};
+          .flags = even ? gpu::BODY_EVEN : 0u};
 }
 
 void SourceWalk::Sums::make_room(device::Device& device, const std::string& prefix) {
@@ -144,7 +143,7 @@ void SourceWalk::make_room(device::Device& device, const LevelBuffers& level, Me
 
 gpu::WalkSourcePush SourceWalk::push(const Workspace& work, const LevelBuffers& level, const BeamBuffers& beams,
                                      const WalkTask& task) const {
-  return {.body = body(level, task.eta, task.even),
+  return {.body = body(level, task.even),
           .beams = beams.on_device.address(),
           .beam_q = level.beam_q.address(),
           .scale = work.scale.address(),

@@ -29,7 +29,6 @@ std::vector<glm::dvec3> powers(std::span<const std::uint32_t> words, const glm::
 // How the light of a level is walked.
 struct WalkTask {
   Method method = Method::fem;
-  double eta = 1;
   bool even = false;       // the coefficients are the same everywhere
   bool mean_rays = false;  // SolveOptions
   std::uint32_t seed = 0;  // of the rays of a correction
@@ -55,7 +54,7 @@ class SourceWalk {
 
   // What rays need of the level, once its cells are recorded. `even`: level.optical is the same everywhere, which saves
   // its reading.
-  gpu::BodyRef body(const LevelBuffers& level, double eta, bool even) const;
+  gpu::BodyRef body(const LevelBuffers& level, bool even) const;
 
   // Light, material or shape have changed.
   void invalidate() { walked_ = {false, false}; }

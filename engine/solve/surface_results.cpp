@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "engine/optics/fresnel.h"
 #include "engine/solve/assembly.h"
 #include "interface/source/vertex_unscattered.comp.h"
 #include "interface/surface/display_scale.comp.h"
@@ -44,6 +43,7 @@ void record_exitance(Workspace& work, const Solved& solved, const device::Buffer
   const gpu::ExitancePush push{.vertices = level.vertices.address(),
                                .faces = level.faces.address(),
                                .face_kinds = level.face_kind.address(),
+                               .boundaries = solved.boundaries.on_device.address(),
                                .x = solved.op.x.address(),
                                .to_phi = solved.op.to_phi.address(),
                                .q = level.q.address(),
@@ -55,8 +55,7 @@ void record_exitance(Workspace& work, const Solved& solved, const device::Buffer
                                .count = level.face_count,
                                .tet_count = level.tet_count,
                                .fem = is_on_vertices(solved.method),
-                               .clipped = solved.walk != nullptr ? 1u : 0u,
-                               .boundary = on_device(solved.boundary)};
+                               .clipped = solved.walk != nullptr ? 1u : 0u};
   work.recorder.dispatch(work.passes.of(shader::exitance, solved.op.model), push, level.face_count, "exitance",
                          level.face_count * (sizeof(glm::uvec3) + 6 * vec3_bytes + 3 * solved.op.field_bytes()));
 }
@@ -114,12 +113,12 @@ void SurfaceResults::record_even(Workspace& work, const Solved& solved) {
   const gpu::EvenFacesPush faces{.vertices = level.vertices.address(),
                                  .faces = level.faces.address(),
                                  .face_tets = level.face_tets.address(),
+                                 .face_kinds = level.face_kind.address(),
                                  .optical = level.optical.address(),
                                  .q = level.q.address(),
                                  .exitance = exitance_.address(),
                                  .even = even_.address(),
                                  .count = level.face_count,
-                                 .kept = static_cast<float>(2 * fresnel_moment(1, solved.eta)),
                                  .same_everywhere = level.even ? 1u : 0u};
   work.recorder.dispatch(work.passes.of(shader::even_faces), faces, level.face_count, "even exitance",
                          level.face_count * (sizeof(glm::uvec3) + sizeof(std::uint32_t) + 5 * vec3_bytes +

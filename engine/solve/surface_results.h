@@ -3,10 +3,10 @@
 
 #include <optional>
 
-#include "engine/optics/boundary.h"
 #include "engine/reference/solution.h"
 #include "engine/solve/level_buffers.h"
 #include "engine/solve/operator_buffers.h"
+#include "engine/solve/refractions.h"
 #include "engine/solve/source_walk.h"
 #include "engine/solve/workspace.h"
 
@@ -17,8 +17,7 @@ struct Solved {
   const LevelBuffers& level;
   const OperatorBuffers& op;
   Method method;
-  Boundary boundary;
-  double eta;
+  const BodyBoundaries& boundaries;
   const SourceWalk* walk;  // of the buried source, whose exitance is clipped; null for the diffuse one
 };
 

@@ -6,19 +6,19 @@
 
 namespace quadgraph {
 
-void record_surface_share(Workspace& work, const LevelBuffers& level, Method method, const Boundary& boundary,
+void record_surface_share(Workspace& work, const LevelBuffers& level, Method method, const BodyBoundaries& boundaries,
                           const OperatorBuffers& op) {
   const gpu::SurfaceSharePush push{.vertices = level.vertices.address(),
                                    .faces = level.faces.address(),
                                    .face_kinds = level.face_kind.address(),
+                                   .boundaries = boundaries.on_device.address(),
                                    .face_offset = level.face_offset.address(),
                                    .face_incidence = level.face_incidence.address(),
                                    .q = level.q.address(),
                                    .scale = work.scale.address(),
                                    .share = op.surface_share.address(),
                                    .count = op.surface_count,
-                                   .fem = on_vertices(method) ? 1u : 0u,
-                                   .reflected = static_cast<float>(boundary.reflected)};
+                                   .fem = on_vertices(method) ? 1u : 0u};
   const std::uint64_t face_bytes = sizeof(glm::uvec3) + 4 * sizeof(glm::vec3) + sizeof(std::uint32_t);
   work.recorder.dispatch(work.passes.of(shader::surface_share), push, op.surface_count, "surface share",
                          3 * level.face_count * face_bytes + op.surface_count * sizeof(gpu::SurfaceShare));

@@ -153,7 +153,7 @@ void TransportCorrection::solve(const CorrectionParts& parts, std::uint32_t half
   const SolverKind kind = possible_solver(parts.operators, correction_key, SolverKind::fmg_pcg).solver;
   const bool cycles = rules_of(kind).cycles;
   const LevelTask task{.solver = kind,
-                       .boundary = parts.boundary,
+                       .boundaries = parts.boundaries.on_device.address(),
                        .tolerance = share_left,
                        .max_iterations = cycles ? most_cycles : most_steps,
                        .smoothing = rules_of(kind).smoothing};
@@ -182,6 +182,7 @@ void TransportCorrection::record_change(const CorrectionParts& parts, bool ahead
                                 .face_offset = level.face_offset.address(),
                                 .face_incidence = level.face_incidence.address(),
                                 .share = parts.operators.at(correction_key, 0).surface_share.address(),
+                                .boundaries = parts.boundaries.on_device.address(),
                                 .scale = work.scale.address(),
                                 .gathered = samples_.gathered().address(),
                                 .change_a = change_[0].address(),
@@ -192,7 +193,6 @@ void TransportCorrection::record_change(const CorrectionParts& parts, bool ahead
                                 .reduction = work.reduction.address(),
                                 .count = level.surface_vertex_count,
                                 .face_count = level.face_count,
-                                .k11 = static_cast<float>(parts.boundary.k11),
                                 .ahead = ahead ? 1u : 0u,
                                 .solves = 0};
   for (; push.solves < 2; ++push.solves, push.ahead = 0) {
@@ -212,6 +212,7 @@ void TransportCorrection::record_faces(const CorrectionParts& parts) {
                                       .face_tets = level.face_tets.address(),
                                       .optical = level.optical.address(),
                                       .face_kinds = level.face_kind.address(),
+                                      .boundaries = parts.boundaries.on_device.address(),
                                       .scale = work.scale.address(),
                                       .gathered = samples_.gathered().address(),
                                       .change_a = change_[0].address(),
@@ -220,9 +221,7 @@ void TransportCorrection::record_faces(const CorrectionParts& parts) {
                                       .halves = halves_.address(),
                                       .exitance = exitance_.address(),
                                       .count = level.face_count,
-                                      .even = level.even ? 1u : 0u,
-                                      .k11 = static_cast<float>(parts.boundary.k11),
-                                      .eta = static_cast<float>(parts.solved.eta)};
+                                      .even = level.even ? 1u : 0u};
   const std::uint64_t of_tet = sizeof(std::uint32_t) + sizeof(glm::uvec4) + sizeof(gpu::Optical);
   work.recorder.dispatch(work.passes.of(shader::transport_faces), faces, level.face_count, "transport change",
                          level.face_count * (sizeof(glm::uvec3) + 15 * vec3_bytes + of_tet));
@@ -317,7 +316,7 @@ TransportShares TransportCorrection::shares_in_motion(std::uint32_t frames) cons
 CorrectedSweep TransportCorrection::sweep_in_motion(const CorrectionParts& parts, const WalkTask& task,
                                                     const TransportShares& shares) {
   start(parts, task, shares);
-  if (moved_ && shares.ahead) samples_.record_carried(parts.transport, parts.boundary.k11);
+  if (moved_ && shares.ahead) samples_.record_carried(parts.transport, parts.boundaries);
   if (!shares.ahead) drawn_share_ = 1;
   const Sampling sampling{
       .directions = motion_directions, .face_rays = motion_rays, .most_draws = 1, .share = drawn_share_};
@@ -364,7 +363,7 @@ CorrectionReport TransportCorrection::run(const CorrectionParts& parts, const So
     report.returns = samples_.returns();
     frames_ = report.sweeps.back().noise.whole <= most_noise_known ? frames + 1 : 0;
   } else {
-    start(parts, {task.method, task.eta, task.even, task.mean_rays, options.sweep_seed}, {});
+    start(parts, {task.method, task.even, task.mean_rays, options.sweep_seed}, {});
     sweep_at_rest(parts, options, report);
     frames_ = frames_of_rest;
     drawn_share_ = 1;

@@ -19,7 +19,7 @@ namespace quadgraph {
 struct CorrectionParts {
   TransportParts transport;
   Operators& operators;                // those of `correction_key` have been created and hold the present coefficients
-  const Boundary& boundary;            // of that operator
+  const BodyBoundaries& boundaries;    // of that operator
   const Solved& solved;                // fem
   const SurfaceResults& results;       // of the solve
   double slow;                         // as of Resolution

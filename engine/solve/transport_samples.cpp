@@ -103,7 +103,7 @@ void TransportSamples::make_room_apart(const TransportParts& parts) {
 }
 
 void TransportSamples::write_field(const TransportParts& parts, const WalkTask& task, bool apart) {
-  const gpu::TransportFieldRef field{.body = parts.walk.body(parts.level, task.eta, task.even),
+  const gpu::TransportFieldRef field{.body = parts.walk.body(parts.level, task.even),
                                      .tree = parts.tree.ref(),
                                      .sources = sources_.address(),
                                      .sky = parts.level.sky.address(),
@@ -208,18 +208,18 @@ void TransportSamples::record_weights(const TransportParts& parts) {
                          level.tet_count * (2 * sizeof(glm::uvec4) + 8 * vec3_bytes + sizeof(gpu::Optical)));
 }
 
-void TransportSamples::record_carried(const TransportParts& parts, double k11) {
+void TransportSamples::record_carried(const TransportParts& parts, const BodyBoundaries& boundaries) {
   Workspace& work = parts.work;
   const LevelBuffers& level = parts.level;
   const gpu::TransportCarryPush push{.faces = level.faces.address(),
                                      .face_kinds = level.face_kind.address(),
+                                     .boundaries = boundaries.on_device.address(),
                                      .fluence = fluence_.address(),
                                      .fluence_before = fluence_before_.address(),
                                      .unit = unit_.address(),
                                      .scale = work.scale.address(),
                                      .gathered = gathered_.address(),
-                                     .count = level.face_count,
-                                     .k11 = static_cast<float>(k11)};
+                                     .count = level.face_count};
   work.recorder.dispatch(work.passes.of(shader::transport_carry), push, level.face_count, "transport source",
                          2 * gathered_.size() + level.face_count * (sizeof(glm::uvec3) + 6 * vec3_bytes));
 }

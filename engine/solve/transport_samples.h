@@ -63,7 +63,7 @@ class TransportSamples {
                     const TransportShares& shares);
 
   // The exitance that is known, for vertices that have moved since; before `record_source`.
-  void record_carried(const TransportParts& parts, double k11);
+  void record_carried(const TransportParts& parts, const BodyBoundaries& boundaries);
 
   // What samples see from here on; the field before is that of the last call.
   void record_source(const TransportParts& parts, const TransportShares& shares);

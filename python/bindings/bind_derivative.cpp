@@ -2,6 +2,7 @@
 #include <pybind11/stl.h>
 
 #include "engine/base/error.h"
+#include "engine/base/text.h"
 #include "engine/derivative/forward_model.h"
 #include "engine/render/engine.h"
 #include "engine/solve/fluence.h"
@@ -11,6 +12,18 @@ namespace py = pybind11;
 
 namespace quadgraph::python {
 namespace {
+
+// Of the bodies, whose indices these are. Throws InputError where they differ.
+double one_index(std::span<const float> eta, const std::vector<std::string>& bodies) {
+  for (std::size_t i = 1; i < eta.size(); ++i) {
+    if (eta[i] == eta[0]) continue;
+    throw InputError("derivatives: eta=" + number_text(eta[0]) + " found of '" + bodies[0] +
+                     "' and eta=" + number_text(eta[i]) + " of '" + bodies[i] +
+                     "', allowed is one index of refraction for all bodies: give both the same eta, or derive by a "
+                     "file of one body");
+  }
+  return static_cast<double>(eta[0]);
+}
 
 // The model and what it reads.
 class BoundModel {
@@ -34,7 +47,7 @@ class BoundModel {
     if (power) at.power = vectors(*power, beams_.size(), "power");
     std::vector<BeamLight> lights;
     for (const LevelBeam& beam : beams_) lights.push_back({beam.way, beam.quarters});
-    options.eta = static_cast<double>(simulation.eta());
+    options.eta = one_index(simulation.eta(), engine.graph().bodies());
     options.check = heed_signals;
     const py::gil_scoped_release release;
     model_.emplace(level_, std::move(at), std::move(lights), std::move(samples), options);

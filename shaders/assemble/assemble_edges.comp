@@ -16,9 +16,10 @@ struct AssembleEdgesPush {
   Uvec2s edge_entry;
   Uints ring_offset;
   Uints ring;
+  Uints face_kinds;
+  Boundaries boundaries;  // by body
   uint count;
   uint even;  // 1: the coefficients are the same everywhere
-  Boundary boundary;
 };
 layout(push_constant, scalar) uniform Block { AssembleEdgesPush push; };
 
@@ -39,8 +40,14 @@ void main() {
     relaxation += relaxation_of(optical) * mass;
   }
   float area = 0.0;
-  for (; k < end; ++k) area += push.face_area.at[push.ring.at[k] >> 3u] / 12.0;
+  uint body = 0u;
+  for (; k < end; ++k) {
+    uint face = push.ring.at[k] >> 3u;
+    area += push.face_area.at[face] / 12.0;
+    body = body_behind(push.face_kinds, face);
+  }
+  Boundary boundary = push.boundaries.at[body];
   uvec2 entries = push.edge_entry.at[i];
-  store_terms(push.rows, entries.x, stiffness, absorption, relaxation, area, push.boundary);
-  store_terms(push.rows, entries.y, stiffness, absorption, relaxation, area, push.boundary);
+  store_terms(push.rows, entries.x, stiffness, absorption, relaxation, area, boundary);
+  store_terms(push.rows, entries.y, stiffness, absorption, relaxation, area, boundary);
 }

@@ -13,9 +13,9 @@ struct AssembleFdmPush {
   Opticals optical;
   Vec3s to_phi;
   Uints face_kinds;
+  Boundaries boundaries;  // by body
   uint count;      // nodes
   uint tet_count;  // inner nodes
-  Boundary boundary;
 };
 layout(push_constant, scalar) uniform Block { AssembleFdmPush push; };
 
@@ -24,8 +24,10 @@ Entry surface_row_sum(uint node, uint inner, float inverse_distance) {
   vec3 own = kappa(push.optical.at[node]);
   vec3 ratio = kappa(push.optical.at[inner]) / own;
   Entry entry = entry_of((ratio - 1.0) * (inverse_distance * inverse_distance), vec3(0), vec3(0));
-  if (push.face_kinds.at[node - push.tet_count] != FACE_OPEN) return entry;
-  return sum_of(entry, boundary_entry(push.boundary, ratio / own * inverse_distance));
+  uint face = node - push.tet_count;
+  if (!is_open(push.face_kinds, face)) return entry;
+  Boundary boundary = push.boundaries.at[body_behind(push.face_kinds, face)];
+  return sum_of(entry, boundary_entry(boundary, ratio / own * inverse_distance));
 }
 
 void main() {

@@ -17,10 +17,12 @@ struct AssembleFemPush {
   Uints tet_incidence;
   Uints face_offset;
   Uints face_incidence;
+  Uints face_kinds;
+  Boundaries boundaries;  // by body
   uint count;
   uint surface_count;
-  uint even;  // 1: the coefficients are the same everywhere
-  Boundary boundary;
+  uint even;    // 1: the coefficients are the same everywhere
+  uint bodies;  // as of Sp3Head
 };
 layout(push_constant, scalar) uniform Block { AssembleFemPush push; };
 
@@ -48,12 +50,16 @@ void main() {
     relaxation += relaxation_of(optical) * mass;
   }
   float area = 0.0;
+  uint body = 0u;
   if (i < push.surface_count) {
     end = push.face_offset.at[i + 1u];
     for (uint k = push.face_offset.at[i]; k < end; ++k) {
-      area += push.face_area.at[push.face_incidence.at[k]] / 12.0;
+      uint face = push.face_incidence.at[k];
+      area += push.face_area.at[face] / 12.0;
+      body = body_behind(push.face_kinds, face);
     }
   }
   // Consistent masses: of a tet's twenty parts five belong to each of its vertices, of a face's twelve four.
-  store_row(push.rows, i, 5.0 * absorption, 5.0 * relaxation, 4.0 * area, push.boundary, off_diagonal_sum(i));
+  store_row(push.rows, i, 5.0 * absorption, 5.0 * relaxation, 4.0 * area,
+            RowBoundary(push.boundaries, body, push.bodies), off_diagonal_sum(i));
 }

@@ -17,10 +17,10 @@ struct AssembleFvPush {
   Opticals optical;
   Vec3s to_phi;
   Uints face_kinds;
+  Boundaries boundaries;  // by body
   uint count;      // nodes
   uint tet_count;  // inner nodes
   LeastTet least;
-  Boundary boundary;
 };
 layout(push_constant, scalar) uniform Block { AssembleFvPush push; };
 
@@ -87,8 +87,9 @@ void main() {
     float size = volume(i);
     row_sum = entry_of(vec3(0), optical.sigma_a * size, relaxation_of(optical) * size);
   } else {
-    bool open = push.face_kinds.at[i - push.tet_count] == FACE_OPEN;
-    row_sum = boundary_entry(push.boundary, vec3(open ? area : 0.0));
+    uint face = i - push.tet_count;
+    bool open = is_open(push.face_kinds, face);
+    row_sum = boundary_entry(push.boundaries.at[body_behind(push.face_kinds, face)], vec3(open ? area : 0.0));
   }
   push.rows.row_sum.at[i] = row_sum;
   push.rows.diagonal.at[i] = difference_of(row_sum, sum);

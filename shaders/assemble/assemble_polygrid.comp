@@ -17,10 +17,10 @@ struct AssemblePolygridPush {
   Opticals optical;  // of the vertices
   Floats volume;
   Vec3s to_phi;
+  Boundaries boundaries;  // of the one body
   uint count;          // vertices
   uint surface_count;  // of them on the surface
   uint published;      // 1: differences of kappa phi, 0: of the flux
-  Boundary boundary;
 };
 layout(push_constant, scalar) uniform Block { AssemblePolygridPush push; };
 
@@ -66,7 +66,7 @@ void surface_row(uint i, uint entry, vec3 here) {
   Entry stored = store_entry(push.rows, entry, entry_of(-per_distance * pair.other, vec3(0), vec3(0)));
   vec3 measure = push.published == 1u ? open / here : vec3(open);
   Entry row_sum = sum_of(entry_of(per_distance * (pair.own - pair.other), vec3(0), vec3(0)),
-                         boundary_entry(push.boundary, measure));
+                         boundary_entry(push.boundaries.at[0], measure));
   store(i, row_sum, stored);
 }
 

@@ -17,7 +17,7 @@ struct IrradianceScalePush {
 layout(push_constant, scalar) uniform Block { IrradianceScalePush push; };
 
 float area_of(uint face) {
-  if (push.face_kinds.at[face] != FACE_OPEN) return 0.0;
+  if (!is_open(push.face_kinds, face)) return 0.0;
   uvec3 corners = push.faces.at[face];
   vec3 p = push.vertices.at[corners.x];
   return 0.5 * length(cross(push.vertices.at[corners.y] - p, push.vertices.at[corners.z] - p));

@@ -10,17 +10,19 @@ struct RightHandSideFemPush {
   Uvec3s faces;
   Uints face_offset;
   Uints face_incidence;
+  Uints face_kinds;
+  Boundaries boundaries;  // by body; null: light is scattered at the surface itself
   Vec3s q;
   Scales scale;
   RightHandSideRef side;
   uint count;
   uint surface_count;
-  Boundary boundary;
 };
 layout(push_constant, scalar) uniform Block { RightHandSideFemPush push; };
 
 // Integral of q against the basis function of surface vertex i: a third of each of its open faces.
-vec3 surface_load(uint i) {
+vec3 surface_load(uint i, out uint body) {
+  body = 0u;
   vec3 sum = vec3(0), inverse = push.scale.at[0].inverse;
   for (uint k = push.face_offset.at[i]; k < push.face_offset.at[i + 1u]; ++k) {
     uint face = push.face_incidence.at[k];
@@ -28,6 +30,7 @@ vec3 surface_load(uint i) {
     vec3 p = push.vertices.at[corners.x];
     float area = 0.5 * length(cross(push.vertices.at[corners.y] - p, push.vertices.at[corners.z] - p));
     sum += push.q.at[face] * inverse * area;
+    body = body_behind(push.face_kinds, face);
   }
   return sum / 3.0;
 }
@@ -35,8 +38,11 @@ vec3 surface_load(uint i) {
 void main() {
   vec3 square = vec3(0);
   EACH(i, push.count) {
-    vec3 load = i < push.surface_count ? surface_load(i) : vec3(0);
-    square += store_b(push.side, i, diffuse_source(push.boundary, load));
+    uint body = 0u;
+    vec3 load = i < push.surface_count ? surface_load(i, body) : vec3(0);
+    Boundary boundary = Boundary(1.0, 0.0, 0.0, 1.0, 0.0);
+    if (uvec2(push.boundaries) != uvec2(0)) boundary = push.boundaries.at[body];
+    square += store_b(push.side, i, diffuse_source(boundary, load));
   }
   store_norm(push.side, square);
 }

@@ -76,7 +76,7 @@ void main() {
   }
   EACH(f, push.face_count) {
     float area = area_of(f);
-    if (push.face_kinds.at[f] == FACE_OPEN) sums.z += area;
+    if (is_open(push.face_kinds, f)) sums.z += area;
     if (f % push.step == 0u) take_sample(f, area);
   }
   counts = reduce_workgroup(counts);

@@ -71,8 +71,9 @@ PixelDoubt doubt_at(uint face, vec3 l, vec3 v, vec3 n, vec3 radiance) {
     exitance += l[k] * scene.exitance.at[vertex];
     area += l[k] / max(share.area.x, 1e-30) * share.area;
   }
-  float through = fresnel_transmittance(clamp(dot(v, n), 0.0, 1.0), scene.eta);
-  return PixelDoubt(area.y, area.z, summed(radiance - through / scene.radiance_norm * exitance), 1.0);
+  Refraction body = refraction_behind(BODY.face_kinds, face);
+  float through = fresnel_transmittance(clamp(dot(v, n), 0.0, 1.0), body.eta);
+  return PixelDoubt(area.y, area.z, summed(radiance - through / body.radiance_norm * exitance), 1.0);
 }
 
 // One view ray for all samples that lie together: where faces are larger than pixels, one per pixel. Samples are read
@@ -105,7 +106,7 @@ void main() {
     vec3 v = towards_eye(scene.eye, position);
     normal = normalize(normal);
     vec3 l = coordinates_in(first.face, position);
-    Leaving light = leaving(first.face, l, v, normal, scene.scale, scene.radiance_norm);
+    Leaving light = leaving(first.face, l, v, normal, scene.scale);
     scattered += share * light.radiance;
     seen += share * light.seen;
     unscattered += share * light.seen * radiance_behind(-v);

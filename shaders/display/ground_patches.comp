@@ -24,7 +24,7 @@ void main() {
   GroundPatch sum = GroundPatch(vec3(0), 0.0, vec3(0), vec3(0), vec3(0), vec3(0));
   for (uint k = begin; k < end; ++k) {
     uint face = push.order.at[k];
-    if (push.face_kinds.at[face] != FACE_OPEN) continue;
+    if (!is_open(push.face_kinds, face)) continue;
     uvec3 corners = push.faces.at[face];
     vec3 a = push.vertices.at[corners.x], b = push.vertices.at[corners.y], c = push.vertices.at[corners.z];
     vec3 facing = 0.5 * cross(b - a, c - a), exitance = max(push.exitance.at[face], vec3(0));

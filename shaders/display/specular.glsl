@@ -1,6 +1,6 @@
 // Light that the surface reflects. The shader that includes it defines first
 //   SURFACE  the SurfacePush, e.g. push
-// and sets `roughness`.
+// and sets `roughness` and `eta`.
 #ifndef QUADGRAPH_SPECULAR_GLSL
 #define QUADGRAPH_SPECULAR_GLSL
 
@@ -17,6 +17,7 @@
 const float PI = 3.14159265;
 
 float roughness;  // GGX alpha here
+float eta;        // index of refraction here
 
 // How much of the roughness here is that of an image.
 float placed_share = 0.0;
@@ -48,7 +49,7 @@ float cook_torrance(vec3 n, vec3 v, vec3 l, float alpha2) {
   float n_h2 = min(0.25 * (n_v + n_l) * (n_v + n_l) / v_h2, 1.0);
   float base = n_h2 * (alpha2 - 1.0) + 1.0;
   float mask = n_v * sqrt(alpha2 + (1.0 - alpha2) * n_l * n_l) + n_l * sqrt(alpha2 + (1.0 - alpha2) * n_v * n_v);
-  float reflectance = fresnel_reflectance(min(sqrt(v_h2), 1.0), SCENE.eta);
+  float reflectance = fresnel_reflectance(min(sqrt(v_h2), 1.0), eta);
   return alpha2 * reflectance * 0.5 * n_l / (PI * base * base * mask);
 }
 
@@ -74,13 +75,13 @@ vec3 specular_radiance(vec3 position, vec3 n, vec3 v, float sky) {
     LightRecord light = SCENE.lights.at[i];
     if (light.kind == LIGHT_AMBIENT) {
       // Ambient light is reflected as by a smooth surface.
-      sum += fresnel_reflectance(clamp(dot(n, v), 0.0, 1.0), SCENE.eta) / PI * sky * light.power;
+      sum += fresnel_reflectance(clamp(dot(n, v), 0.0, 1.0), eta) / PI * sky * light.power;
       continue;
     }
     LightShape shape = no_shape();
     if (SHAPED) shape = SCENE.shapes.at[i];
     if (SHAPED && light.kind == LIGHT_ENVIRONMENT) {
-      float share = fresnel_reflectance(clamp(dot(n, v), 0.0, 1.0), SCENE.eta) * sky;
+      float share = fresnel_reflectance(clamp(dot(n, v), 0.0, 1.0), eta) * sky;
       sum += share * light.power * reflected_environment(shape, n, v);
       continue;
     }

@@ -8,6 +8,7 @@ layout(location = 0) in vec3 position;  // mm
 layout(location = 1) in vec3 normal;
 layout(location = 4) in float sky;  // share that is not hidden by the body
 layout(location = 5) in vec3 rest;  // mm, the position at rest
+layout(location = 6) flat in uint face;  // outside face of level 0, of the same body
 layout(location = 2) in vec3 exitance;             // W/mm^2
 layout(location = 3) in vec3 unscattered_exitance;  // W/mm^2
 layout(location = 0) out vec4 scattered_coverage;  // W/(mm^2 sr), 1
@@ -20,9 +21,11 @@ layout(location = 2) out vec4 unscattered;         // W/(mm^2 sr), 1
 void main() {
   roughness = SCENE.roughness;
   if (PLACED_ROUGHNESS) place_roughness(rest, dFdx(rest), dFdy(rest));
+  Refraction body = refraction_behind(SCENE.face_kinds, face);
+  eta = body.eta;
   vec3 n = normalize(normal);
   vec3 v = towards_eye(SCENE.eye, position);
-  float share = fresnel_transmittance(clamp(dot(n, v), 0.0, 1.0), SCENE.eta) / SCENE.radiance_norm;
+  float share = fresnel_transmittance(clamp(dot(n, v), 0.0, 1.0), eta) / body.radiance_norm;
   scattered_coverage = vec4(exitance * share, 1.0);
   specular = vec4(specular_radiance(position, n, v, sky), 1.0);
   unscattered = vec4(unscattered_exitance * share, 1.0);

@@ -9,6 +9,7 @@ layout(location = 2) out vec3 exitance;              // W/mm^2
 layout(location = 3) out vec3 unscattered_exitance;  // W/mm^2
 layout(location = 4) out float sky;                  // share that is not hidden by the body
 layout(location = 5) out vec3 rest;                  // mm, the position at rest
+layout(location = 6) flat out uint face;             // outside face of level 0
 
 #define SCENE push.scene.at[0]
 
@@ -17,14 +18,14 @@ void main() {
   rest = vec3(0);
   if (PLACED_ROUGHNESS) rest = push.rest.at[gl_VertexIndex];
   normal = SCENE.normals.at[gl_VertexIndex];
-  uint index = SCENE.face.at[gl_VertexIndex];
-  uvec3 face = SCENE.faces.at[index];
-  sky = SCENE.sky.at[index];
+  face = SCENE.face.at[gl_VertexIndex];
+  uvec3 corners = SCENE.faces.at[face];
+  sky = SCENE.sky.at[face];
   vec3 weight = SCENE.barycentric.at[gl_VertexIndex];
   exitance = unscattered_exitance = vec3(0.0);
   for (int k = 0; k < 3; ++k) {
-    exitance += weight[k] * SCENE.exitance.at[face[k]];
-    unscattered_exitance += weight[k] * SCENE.unscattered.at[face[k]];
+    exitance += weight[k] * SCENE.exitance.at[corners[k]];
+    unscattered_exitance += weight[k] * SCENE.unscattered.at[corners[k]];
   }
   gl_Position = SCENE.clip_from_offset * vec4(position - SCENE.origin, 1.0);
 }

@@ -18,6 +18,7 @@ layout(location = 2) out vec4 normal_face;        // unit, low half of the face
 void main() {
   roughness = SCENE.roughness;
   if (PLACED_ROUGHNESS) place_roughness(rest, dFdx(rest), dFdy(rest));
+  eta = eta_behind(SCENE.face_kinds, face);
   vec3 n = normalize(normal);
   position_coverage = vec4(position, 1.0);
   specular_face = vec4(specular_radiance(position, n, towards_eye(SCENE.eye, position), sky), face / FACE_HALF);

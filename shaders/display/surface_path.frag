@@ -36,6 +36,7 @@ bool last_cut(PathTools tools, vec3 end, out vec3 point, out vec3 outward) {
 // what lay before it has been cut away: then the cut face is what is seen, and it lies on the same ray.
 void main() {
   roughness = SCENE.roughness;
+  eta = SCENE.eta;
   PathField field = push.field.at[0];
   if (field.tools.count > 0u && cut_away(field.tools, position)) discard;
   if (PLACED_ROUGHNESS) place_roughness(rest, dFdx(rest), dFdy(rest));
@@ -49,7 +50,7 @@ void main() {
   }
   vec3 v = towards_eye(SCENE.eye, at);
   if (dot(n, v) < 0.0) n = gl_FrontFacing ? normalize(n - 1.001 * dot(n, v) * v) : -n;
-  float share = fresnel_transmittance(clamp(dot(n, v), 0.0, 1.0), SCENE.eta) / SCENE.radiance_norm;
+  float share = fresnel_transmittance(clamp(dot(n, v), 0.0, 1.0), eta) / SCENE.radiance_norm;
   scattered_coverage = vec4(share * path_exitance(field, at), 1.0);
   specular = vec4(specular_radiance(at, n, v, 1.0), 1.0);
   unscattered = vec4(0.0, 0.0, 0.0, 1.0);

@@ -8,6 +8,7 @@
 struct ExchangeEnterPush {
   Vec3s vertices;
   Uvec3s faces;
+  Uints face_kinds;
   Vec3s q;  // W/mm^2, of the scene's light
   Vec3s irradiance;
   Vec3s beam_q;  // of that beam, written
@@ -15,7 +16,6 @@ struct ExchangeEnterPush {
   ExchangeStates state;
   Reduction reduction;
   uint count;
-  float transmitted;  // share of uniform illumination that enters
 };
 layout(push_constant, scalar) uniform Block { ExchangeEnterPush push; };
 
@@ -26,7 +26,7 @@ void main() {
   EACH(f, push.count) {
     vec3 irradiance = push.factor.at[0u] * push.irradiance.at[f];
     push.irradiance.at[f] = irradiance;
-    vec3 q = push.transmitted * irradiance;
+    vec3 q = refraction_behind(push.face_kinds, f).transmitted * irradiance;
     float area = area_of(push.faces, push.vertices, f);
     entered += area * push.q.at[f];
     change += area * abs(q - push.beam_q.at[f]);

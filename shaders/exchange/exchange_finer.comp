@@ -18,7 +18,6 @@ struct ExchangeFinerPush {
   Reduction reduction;
   uint count;
   uint width;
-  float transmitted;  // share of uniform illumination that enters
 };
 layout(push_constant, scalar) uniform Block { ExchangeFinerPush push; };
 
@@ -28,7 +27,7 @@ void main() {
   vec3 received = vec3(0);  // W
   EACH(f, push.count) {
     vec3 irradiance = vec3(0);
-    if (push.face_kinds.at[f] == FACE_OPEN) {
+    if (is_open(push.face_kinds, f)) {
       for (uint k = f * push.width; k < (f + 1u) * push.width; ++k) {
         irradiance += push.weight.at[k] * push.coarse.at[push.index.at[k]];
       }
@@ -38,6 +37,6 @@ void main() {
   }
   vec3 total;
   if (!reduce_dispatch(push.reduction, received, total) || gl_LocalInvocationID.x != 0u) return;
-  vec3 wanted = push.state.at[0].power / push.transmitted;
+  vec3 wanted = push.state.at[0].power / push.state.at[0].transmitted;
   push.factor.at[0] = mix(vec3(0), wanted / total, greaterThan(total, vec3(0)));
 }

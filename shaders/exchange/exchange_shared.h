@@ -10,9 +10,10 @@ namespace quadgraph::gpu {
 #endif
 
 struct ExchangeState {
-  vec3 power;    // W, that enters again
-  vec3 change;   // W, integral of the difference to what entered again before, without its sign
-  vec3 entered;  // W, of the scene's light
+  vec3 power;        // W, that enters again
+  vec3 transmitted;  // the share of what arrives that it is
+  vec3 change;       // W, integral of the difference to what entered again before, without its sign
+  vec3 entered;      // W, of the scene's light
 };
 
 #ifndef __cplusplus

@@ -47,6 +47,7 @@ vec3 smooth_normal(uint face, vec3 l) {
 struct Met {
   vec3 normal;   // unit, of the smooth surface
   float cosine;  // of the ray with it, at least 0
+  float eta;     // of the body
 };
 
 // Barycentric coordinates of a face's corners at a point of the face.
@@ -58,15 +59,15 @@ vec3 coordinates_on(uvec3 ids, TetPoint at) {
 // At a point of outside face `face`.
 Met met_from_inside(uint face, TetPoint at, vec3 direction) {
   vec3 n = smooth_normal(face, coordinates_on(BODY.faces.at[face], at));
-  return Met(n, max(dot(direction, n), 0.0));
+  return Met(n, max(dot(direction, n), 0.0), eta_behind(BODY.face_kinds, face));
 }
 
 // At a point of a face of unit normal `flat_normal`.
 Escape escape_here(vec3 share, uint face, TetPoint at, vec3 direction, Met met, vec3 flat_normal) {
   uvec3 ids = BODY.faces.at[face];
   vec3 point = corners_of(ids) * coordinates_on(ids, at);
-  float cos_o = sqrt(max(1.0 - BODY.eta * BODY.eta * (1.0 - met.cosine * met.cosine), 0.0));
-  vec3 outside = normalize(BODY.eta * (direction - met.cosine * met.normal) + cos_o * met.normal);
+  float cos_o = sqrt(max(1.0 - met.eta * met.eta * (1.0 - met.cosine * met.cosine), 0.0));
+  vec3 outside = normalize(met.eta * (direction - met.cosine * met.normal) + cos_o * met.normal);
   return Escape(share, face, point, outward_of(flat_normal, outside));
 }
 
@@ -110,9 +111,9 @@ Gathered gather(TetPoint at, vec3 direction) {
     bar(at, exit.place);
     uint face = across - BODY.tet_count;
     vec3 n = outward_normal(face);
-    if (BODY.face_kinds.at[face] == FACE_OPEN) {
+    if (is_open(BODY.face_kinds, face)) {
       Met met = met_from_inside(face, at, direction);
-      float reflected = internal_reflectance(met.cosine, BODY.eta);
+      float reflected = internal_reflectance(met.cosine, met.eta);
       vec3 through = left * (1.0 - reflected);
       sum.seen += through;
       if (largest(through) > largest(sum.second.share)) {

@@ -32,7 +32,7 @@ void main() {
   solid = push.solid.at[0];
   if (face >= BODY.face_count) return;
   push.exitance.at[face] = vec3(0);
-  if (BODY.face_kinds.at[face] != FACE_OPEN) return;
+  if (!is_open(BODY.face_kinds, face)) return;
   uvec3 ids = BODY.faces.at[face];
   mat3 corners = corners_of(ids);
   vec3 doubled = cross(corners[1] - corners[0], corners[2] - corners[0]);
@@ -40,15 +40,16 @@ void main() {
   vec3 normal = normalize(doubled);
   vec3 tangent = face_tangent(face, normal, corners[1] - corners[0]);
   TetPoint centre = start_on_face(BODY.face_tets.at[face], ids, vec3(1.0 / 3.0));
+  float eta = eta_behind(BODY.face_kinds, face);
   vec3 exitance = vec3(0);
   for (uint node = 0u; node < LAMBERTIAN_NODES; ++node) {
     vec3 incoming = lambertian_incoming(2u * node + (node >> 1u), normal, tangent);
     if (push.through == 1u) {
-      exitance += LAMBERTIAN_W[node] * leaving(face, vec3(1.0 / 3.0), -incoming, normal, push.scale, 1.0).radiance;
+      exitance += LAMBERTIAN_W[node] * leaving(face, vec3(1.0 / 3.0), -incoming, normal, push.scale).radiance;
       continue;
     }
-    vec3 radiance = gather(centre, refracted(incoming, normal, BODY.eta)).radiance / (BODY.eta * BODY.eta);
-    exitance += LAMBERTIAN_W[node] * fresnel_transmittance(sqrt(LAMBERTIAN_U[node]), BODY.eta) * radiance;
+    vec3 radiance = gather(centre, refracted(incoming, normal, eta)).radiance / (eta * eta);
+    exitance += LAMBERTIAN_W[node] * fresnel_transmittance(sqrt(LAMBERTIAN_U[node]), eta) * radiance;
   }
   push.exitance.at[face] = PI * exitance;
 }

@@ -20,7 +20,7 @@ SolidRef solid;
 
 GatherNode node_of_face(uint face) {
   GatherNode node = GatherNode(vec3(0), vec3(0), vec3(0), vec3(0), 0.0);
-  if (solid.body.face_kinds.at[face] != FACE_OPEN) return node;
+  if (!is_open(solid.body.face_kinds, face)) return node;
   uvec3 ids = solid.body.faces.at[face];
   vec3 a = solid.body.vertices.at[ids.x], b = solid.body.vertices.at[ids.y],
        c = solid.body.vertices.at[ids.z];

@@ -10,10 +10,10 @@
 
 // The direction inside of light that leaves along `outward` at a surface of normal `n`, turned around; into the face of
 // normal `face_normal` in any case.
-vec3 view_ray(vec3 outward, vec3 n, vec3 face_normal) {
+vec3 view_ray(vec3 outward, vec3 n, vec3 face_normal, float eta) {
   float cos_o = clamp(dot(outward, n), 0.0, 1.0);
-  float cos_i = sqrt(max(1.0 - (1.0 - cos_o * cos_o) / (BODY.eta * BODY.eta), 0.0));
-  vec3 ray = normalize((cos_o / BODY.eta - cos_i) * n - outward / BODY.eta);
+  float cos_i = sqrt(max(1.0 - (1.0 - cos_o * cos_o) / (eta * eta), 0.0));
+  vec3 ray = normalize((cos_o / eta - cos_i) * n - outward / eta);
   return -outward_of(face_normal, -ray);
 }
 
@@ -40,7 +40,7 @@ vec3 scaled(vec3 radiance, uvec3 ids, vec3 l, GatherScales scale, float radiance
 // Light that leaves face `face` at barycentric coordinates `l` along `outward`, at a surface of normal `n`. Fresnel and
 // refraction included: radiance over eta^2 is kept. Where enough of a ray comes out behind, it goes on to the next
 // part of the body, the brightest branch first. scale: null: what is gathered counts as it is.
-Leaving leaving(uint face, vec3 l, vec3 outward, vec3 n, GatherScales scale, float radiance_norm) {
+Leaving leaving(uint face, vec3 l, vec3 outward, vec3 n, GatherScales scale) {
   Leaving sum = Leaving(vec3(0), vec3(0));
   vec3 share = vec3(1);  // of the light at `face`
   Escape most = NO_ESCAPE, second = NO_ESCAPE;  // that wait to be followed
@@ -50,11 +50,12 @@ Leaving leaving(uint face, vec3 l, vec3 outward, vec3 n, GatherScales scale, flo
     vec3 doubled = cross(corners[1] - corners[0], corners[2] - corners[0]);
     vec3 face_normal = doubled / max(length(doubled), 1e-30);
     if (part > 0u) n = smooth_normal(face, l);
-    share *= fresnel_transmittance(clamp(dot(outward, n), 0.0, 1.0), BODY.eta);
+    Refraction body = refraction_behind(BODY.face_kinds, face);
+    share *= fresnel_transmittance(clamp(dot(outward, n), 0.0, 1.0), body.eta);
     TetPoint at = start_on_face(BODY.face_tets.at[face], ids, l);
-    Gathered inside = gather(at, view_ray(outward, n, face_normal));
-    vec3 radiance = inside.radiance / (BODY.eta * BODY.eta);
-    sum.radiance += share * (uvec2(scale) == uvec2(0) ? radiance : scaled(radiance, ids, l, scale, radiance_norm));
+    Gathered inside = gather(at, view_ray(outward, n, face_normal, body.eta));
+    vec3 radiance = inside.radiance / (body.eta * body.eta);
+    sum.radiance += share * (uvec2(scale) == uvec2(0) ? radiance : scaled(radiance, ids, l, scale, body.radiance_norm));
     sum.seen += share * (inside.seen - inside.most.share - inside.second.share);
     inside.most.share *= share;
     inside.second.share *= share;

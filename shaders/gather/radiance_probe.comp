@@ -15,7 +15,6 @@ struct RadianceProbePush {
   Vec3s radiance;       // W/(mm^2 sr), written: scattered
   Vec3s transmittance;  // written
   uint count;
-  float radiance_norm;  // integral of F_t cos over the hemisphere, sr
 };
 layout(push_constant, scalar) uniform Block { RadianceProbePush push; };
 
@@ -35,7 +34,7 @@ void main() {
   uvec3 ids = BODY.faces.at[face];
   vec3 p = BODY.vertices.at[ids.x];
   vec3 normal = normalize(cross(BODY.vertices.at[ids.y] - p, BODY.vertices.at[ids.z] - p));
-  Leaving light = leaving(face, vec3(1.0 / 3.0), push.direction.at[i], normal, push.scale, push.radiance_norm);
+  Leaving light = leaving(face, vec3(1.0 / 3.0), push.direction.at[i], normal, push.scale);
   push.radiance.at[i] = light.radiance;
   push.transmittance.at[i] = light.seen;
 }

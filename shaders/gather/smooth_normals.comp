@@ -37,7 +37,7 @@ void main() {
   uvec3 ids = body.faces.at[face];
   uint v = ids[i % 3u];
   vec3 own = unit(weighed_normal(face, v)), sum = vec3(0);
-  if (body.face_kinds.at[face] == FACE_OPEN) {
+  if (is_open(body.face_kinds, face)) {
     for (uint k = push.face_offset.at[v]; k < push.face_offset.at[v + 1u]; ++k) {
       vec3 normal = weighed_normal(push.face_incidence.at[k], v);
       sum += smooth_share(dot(own, unit(normal))) * normal;

@@ -70,7 +70,7 @@ Met back_to_surface(uint v, vec3 direction) {
       continue;
     }
     uint face = across - BODY.tet_count;
-    if (BODY.face_kinds.at[face] == FACE_OPEN) return Met(true, face, quarter_here(face, at), tau);
+    if (is_open(BODY.face_kinds, face)) return Met(true, face, quarter_here(face, at), tau);
     bar(at, exit.place);
     vec3 n = outward_normal(face);
     direction = normalize(direction - 2.0 * dot(direction, n) * n);
@@ -100,13 +100,13 @@ uint quarter_at(uint face, uint v) {
   return v == ids.x ? 0u : v == ids.y ? 1u : 2u;
 }
 
-float inside_cosine(float cosine) {
-  return max(sqrt(max(1.0 - (1.0 - cosine * cosine) / (BODY.eta * BODY.eta), 0.0)), LEAST_COSINE);
+float inside_cosine(float cosine, float eta) {
+  return max(sqrt(max(1.0 - (1.0 - cosine * cosine) / (eta * eta), 0.0)), LEAST_COSINE);
 }
 
 // Fluence behind a face that `q` enters by, of light that travels along `incoming` outside.
-vec3 entry_fluence(vec3 q, vec3 incoming, vec3 normal) {
-  return q / inside_cosine(min(-dot(incoming, normal), 1.0));
+vec3 entry_fluence(vec3 q, vec3 incoming, vec3 normal, float eta) {
+  return q / inside_cosine(min(-dot(incoming, normal), 1.0), eta);
 }
 
 // Light at a surface vertex from the open faces around it that it enters by. Returns whether there are any.
@@ -119,7 +119,8 @@ bool lit_at_surface(uint beam, uint v, vec3 incoming, bool directed, out vec3 en
     float size = length(normal);
     if (directed && dot(incoming, normal) >= 0.0) continue;
     vec3 q = q_at(beam, face, quarter_at(face, v));
-    entry += size * (directed ? entry_fluence(q, incoming, normal / size) : q);
+    float eta = eta_behind(BODY.face_kinds, face);
+    entry += size * (directed ? entry_fluence(q, incoming, normal / size, eta) : q);
     area += size;
   }
   entry = area > 0.0 ? entry / area : vec3(0);
@@ -130,13 +131,15 @@ Light directed_light(uint beam, uint v, vec3 incoming) {
   vec3 entry;
   if (v < push.surface_vertex_count && lit_at_surface(beam, v, incoming, true, entry)) return Light(entry, vec3(0));
   Met met = back_to_surface(v, -incoming);
-  if (met.found && BODY.eta > 1.0) {
+  if (!met.found) return NO_LIGHT;
+  float eta = eta_behind(BODY.face_kinds, met.face);
+  if (eta > 1.0) {
     // By the normal where the straight way ends one knows how the light was bent.
-    met = back_to_surface(v, -refracted(incoming, normal_of(met.face), BODY.eta));
+    met = back_to_surface(v, -refracted(incoming, normal_of(met.face), eta));
   }
   if (!met.found) return NO_LIGHT;
   vec3 q = q_at(beam, met.face, met.quarter);
-  return Light(entry_fluence(q, incoming, normal_of(met.face)), met.tau);
+  return Light(entry_fluence(q, incoming, normal_of(met.face), eta), met.tau);
 }
 
 vec3 surface_normal(uint v) {
@@ -154,15 +157,21 @@ vec3 fluence_below(Lambertian light, vec3 tau) {
   return sum;
 }
 
+Lambertian bundle(uint kind, uint face) {
+  Lambertian light = lambertian(eta_behind(BODY.face_kinds, face));
+  return kind == BEAM_MEAN ? Lambertian(vec4(0.25), vec4(dot(light.share, light.cosine))) : light;
+}
+
 Light lambertian_light(uint beam, uint kind, uint v) {
-  Lambertian light = lambertian(BODY.eta);
-  if (kind == BEAM_MEAN) light = Lambertian(vec4(0.25), vec4(dot(light.share, light.cosine)));
-  vec3 whole = fluence_below(light, vec3(0)), entry;
+  vec3 entry;
   if (v < push.surface_vertex_count && lit_at_surface(beam, v, vec3(0), false, entry)) {
-    return Light(whole * entry, vec3(0));
+    Lambertian light = bundle(kind, push.face_incidence.at[push.face_offset.at[v]]);
+    return Light(fluence_below(light, vec3(0)) * entry, vec3(0));
   }
   Met met = back_to_surface(v, surface_normal(push.nearest.at[v]));
   if (!met.found) return NO_LIGHT;
+  Lambertian light = bundle(kind, met.face);
+  vec3 whole = fluence_below(light, vec3(0));
   return Light(whole * q_at(beam, met.face, met.quarter), -log(fluence_below(light, met.tau) / whole));
 }
 

@@ -1,5 +1,5 @@
 // What of a light enters a surface at a point. The shader that includes it defines first
-//   ENTERED  what has eta and views, e.g. push
+//   ENTERED  what has views, e.g. push
 #ifndef QUADGRAPH_ENTERING_GLSL
 #define QUADGRAPH_ENTERING_GLSL
 
@@ -16,6 +16,7 @@ struct Lamp {
   LightShape shape;
   uint channel;
   float width;  // of a sample of the surface, mm
+  float eta;    // of the body behind it
 };
 
 // What of a light in one place would enter at one point if nothing hid it, over its power: cos * E * F_t(cos, eta).
@@ -27,7 +28,7 @@ float share_from(Lamp lamp, vec3 position, vec3 normal) {
     float width = lamp.width / distance(lamp.light.towards_or_at, position);
     incident.share *= projected(lamp.shape, -incident.direction, width)[lamp.channel];
   }
-  return cos_i * fresnel_transmittance(cos_i, ENTERED.eta) * incident.share;
+  return cos_i * fresnel_transmittance(cos_i, lamp.eta) * incident.share;
 }
 
 // Share from a patch, the mean over its parts.

@@ -10,6 +10,7 @@ layout(local_size_x = WORKGROUP_SIZE) in;
 struct EnvironmentHiddenPush {
   Vec3s vertices;
   Uvec3s faces;
+  Uints face_kinds;
   Uvec2s rows;  // as ExchangePush
   Uints entries;
   LightRecords lights;
@@ -18,7 +19,6 @@ struct EnvironmentHiddenPush {
   uint face_count;
   uint light_count;
   float rays;  // per face
-  float eta;
 };
 layout(push_constant, scalar) uniform Block { EnvironmentHiddenPush push; };
 
@@ -37,11 +37,12 @@ Place place_of(uint face) {
 vec3 hidden_from(uint face, LightShape shape) {
   Place own = place_of(face);
   uvec2 row = push.rows.at[face];
+  float eta = eta_behind(push.face_kinds, face);
   vec3 sum = vec3(0);
   for (uint k = row.x; k < row.y; ++k) {
     vec3 way = normalize(place_of(push.entries.at[k]).centre - own.centre);
     float cosine = clamp(dot(way, own.normal), 0.0, 1.0);
-    sum += fresnel_transmittance(cosine, push.eta) * environment_at(shape, ENVIRONMENT_RAYS, way);
+    sum += fresnel_transmittance(cosine, eta) * environment_at(shape, ENVIRONMENT_RAYS, way);
   }
   return 3.14159265 / push.rays * sum;
 }

@@ -12,6 +12,7 @@ layout(local_size_x = WORKGROUP_SIZE) in;
 struct IrradiancePush {
   Vec3s vertices;  // mm
   Uvec3s faces;
+  Uints face_kinds;
   Vec3s q;        // W/mm^2, written
   Floats beam_q;  // per beam what gpu::Beam says: shares of its power; written
   Floats sky;     // per face: share of ambient light that other parts of the body do not hide
@@ -22,8 +23,6 @@ struct IrradiancePush {
   uint face_count;
   uint light_count;
   uint subdivision;  // even: the face is sampled at the centroids of subdivision^2 equal triangles
-  float eta;
-  float diffuse_transmittance;  // of a smooth surface under uniform illumination from outside
 };
 layout(push_constant, scalar) uniform Block { IrradiancePush push; };
 #define ENTERED push
@@ -95,8 +94,8 @@ vec4 quarters_of(Lamp lamp, vec3 a, vec3 ab, vec3 ac, vec3 normal) {
 }
 
 // What of an environment enters a face, over its power.
-vec3 environment_share(LightShape shape, vec3 normal, uint hidden, uint face) {
-  vec3 all = environment_at(shape, ENVIRONMENT_ENTERING, normal);
+vec3 environment_share(LightShape shape, Refraction body, vec3 normal, uint hidden, uint face) {
+  vec3 all = environment_at(shape, ENVIRONMENT_ENTERING + body.entering, normal);
   if (uvec2(push.hidden) == uvec2(0)) return push.sky.at[face] * all;
   return max(all - push.hidden.at[hidden], vec3(0));
 }
@@ -111,6 +110,7 @@ void main() {
   vec3 doubled = cross(ab, ac);
   vec3 normal = doubled / max(length(doubled), 1e-30);  // none of a face without area
 
+  Refraction body = refraction_behind(push.face_kinds, f);
   vec3 q = vec3(0);
   uint beam = 0u;  // of the light
   uint environment = 0u;
@@ -118,19 +118,19 @@ void main() {
   for (uint i = 0u; i < push.light_count; ++i) {
     LightRecord light = push.lights.at[i];
     if (light.kind == LIGHT_AMBIENT) {
-      float share = push.sky.at[f] * push.diffuse_transmittance;
+      float share = push.sky.at[f] * body.transmitted;
       push.beam_q.at[beam + f] = share;
       q += share * light.power;
       beam += BEAM_FACE * push.face_count;
       continue;
     }
-    Lamp lamp = Lamp(light, no_shape(), 0u, 0.0);
+    Lamp lamp = Lamp(light, no_shape(), 0u, 0.0, body.eta);
     if (SHAPED) {
       lamp.shape = push.shapes.at[i];
       lamp.width = sqrt(0.5 * length(cross(ab, ac))) / float(push.subdivision);
     }
     if (SHAPED && light.kind == LIGHT_ENVIRONMENT) {
-      vec3 share = environment_share(lamp.shape, normal, environment++ * push.face_count + f, f);
+      vec3 share = environment_share(lamp.shape, body, normal, environment++ * push.face_count + f, f);
       for (uint c = 0u; c < 3u; ++c) push.beam_q.at[beam + BEAM_RGB * f + c] = share[c] * light.power[c];
       q += share * light.power;
       beam += BEAM_RGB * push.face_count;

@@ -13,6 +13,7 @@ layout(local_size_x = WORKGROUP_SIZE) in;
 struct LightErrorPush {
   Vec3s vertices;  // mm
   Uvec3s faces;
+  Uints face_kinds;
   Floats beam_q;  // as of IrradiancePush
   Floats sky;     // per face: share of all directions outside in which no other part of the body is
   Beams beams;    // in the order of the lights that make them up
@@ -21,11 +22,9 @@ struct LightErrorPush {
   ShadowViews views;
   TreeRef tree;
   Vec3s difference;  // W/mm^2, per sample and face; written by the first turn, added to by the others
-  uint face_count;
   uint light_count;
   uint rays;  // of light from all around, a face
   uint turn;  // below LIGHT_TURNS: of the points of a sample, one invocation per sample and face; then the rest, one per face
-  float eta;
   float sky_share;  // of the noise of light from all around, what counts
 };
 layout(push_constant, scalar) uniform Block { LightErrorPush push; };
@@ -47,6 +46,7 @@ struct Face {
   mat3 corners;
   vec3 normal;
   float width;  // of a sample of it, mm
+  float eta;    // of the body behind it
 };
 
 Face face_of(uint number) {
@@ -54,7 +54,8 @@ Face face_of(uint number) {
   vec3 a = push.vertices.at[ids.x], b = push.vertices.at[ids.y], c = push.vertices.at[ids.z];
   vec3 doubled = cross(b - a, c - a);
   float twice = length(doubled);
-  return Face(number, mat3(a, b, c), doubled / max(twice, 1e-30), sqrt(0.5 * twice / float(FACE_QUARTERS)));
+  return Face(number, mat3(a, b, c), doubled / max(twice, 1e-30), sqrt(0.5 * twice / float(FACE_QUARTERS)),
+              eta_behind(push.face_kinds, number));
 }
 
 bool is_hidden(uint face, vec3 point, vec3 towards, float reach) {
@@ -72,7 +73,7 @@ vec3 unhidden(Lamp lamp, vec3 point, vec3 normal) {
 
 // Number i of the lights, which may be several records; then i is the last of these.
 Lamp lamp_of(inout uint i, Face face) {
-  Lamp lamp = Lamp(push.lights.at[i], no_shape(), 0u, face.width);
+  Lamp lamp = Lamp(push.lights.at[i], no_shape(), 0u, face.width, face.eta);
   if (!SHAPED) return lamp;
   lamp.shape = push.shapes.at[i];
   while (push.shapes.at[i].more_follow == 1u) ++i;
@@ -97,7 +98,7 @@ void place_on(Beam rectangle, uint k, inout Lamp lamp, inout uint state) {
 // What is wrong with the maps at a point: of one light, drawn by what it brings, what is hidden of all. Rectangles, which
 // have maps of some of their places alone, come with all their light. k: number of the point in its sample.
 vec3 unlike_maps(Face face, vec3 point, uint k, inout uint state) {
-  Lamp drawn = Lamp(push.lights.at[0], no_shape(), 0u, 0.0);
+  Lamp drawn = Lamp(push.lights.at[0], no_shape(), 0u, 0.0, face.eta);
   vec3 light = vec3(0);
   float all = 0.0, chosen = 1.0;
   uint beam = 0u;
@@ -167,7 +168,7 @@ vec3 noise_of(Beam beam, Face face) {
   vec3 sum = vec3(0);
   for (uint ray = 0u; ray < push.rays; ++ray) {
     uint number = push.rays * face.number + ray, state = hash(face.number ^ hash(ray));
-    SkyRay drawn = drawn_from_sky(beam, number, face.normal, face.corners[1] - face.corners[0], push.eta, state);
+    SkyRay drawn = drawn_from_sky(beam, number, face.normal, face.corners[1] - face.corners[0], face.eta, state);
     if (drawn.let_in == vec3(0)) continue;
     vec3 point = face.corners * spread_over_face(number);
     if (push.sky.at[face.number] < 1.0 && is_hidden(face.number, point, drawn.towards, FAR)) continue;
@@ -190,21 +191,22 @@ vec3 rest(Face face) {
       continue;
     }
     for (uint k = 0u; k < FACE_QUARTERS; ++k) {
-      sum -= 0.25 * beam_light(own, push.beam_q, push.face_count, face.number, k);
+      sum -= 0.25 * beam_light(own, push.beam_q, faces_in(push.face_kinds), face.number, k);
     }
   }
   return sum;
 }
 
 void main() {
-  uint i = gl_GlobalInvocationID.x, f = i % push.face_count;
+  uint faces = faces_in(push.face_kinds);
+  uint i = gl_GlobalInvocationID.x, f = i % faces;
   if (push.turn < LIGHT_TURNS) {
-    if (i >= LIGHT_SAMPLES * push.face_count) return;
-    vec3 found = arriving(face_of(f), LIGHT_SAMPLES * f + i / push.face_count);
+    if (i >= LIGHT_SAMPLES * faces) return;
+    vec3 found = arriving(face_of(f), LIGHT_SAMPLES * f + i / faces);
     push.difference.at[i] = push.turn == 0u ? found : push.difference.at[i] + found;
     return;
   }
-  if (i >= push.face_count) return;
+  if (i >= faces) return;
   vec3 more = rest(face_of(f));
-  for (uint k = 0u; k < LIGHT_SAMPLES; ++k) push.difference.at[k * push.face_count + f] += more;
+  for (uint k = 0u; k < LIGHT_SAMPLES; ++k) push.difference.at[k * faces + f] += more;
 }

@@ -54,17 +54,18 @@ QG_ARRAY(LightShapes, LightShape);
 struct SurfaceScene {
   mat4 clip_from_offset;  // of what is `origin` (mm) less than a place: engine/render/display/camera.h
   vec3 origin;
-  vec4 eye;     // shared/eye.h
-  float reach;  // mm, more than the body is wide
-  float eta;
+  vec4 eye;             // shared/eye.h
+  float reach;          // mm, more than the body is wide
+  float eta;            // surface_path.frag alone, as is the next: of the one material of what has no levels
+  float radiance_norm;  // as of Refraction
   float roughness;      // GGX alpha
-  float radiance_norm;  // integral of F_t cos over the hemisphere, sr
   uint light_count;
   QG_REF(Vec3s) vertices;     // display mesh, mm
   QG_REF(Vec3s) normals;      // unit
   QG_REF(Uints) face;         // per display vertex: outside face of level 0
   QG_REF(Vec3s) barycentric;  // and where in it
   QG_REF(Uvec3s) faces;       // level 0
+  QG_REF(Uints) face_kinds;   // the same
   QG_REF(Vec3s) exitance;     // per surface vertex of level 0, W/mm^2
   QG_REF(Vec3s) unscattered;  // the same
   QG_REF(Floats) sky;  // per face of level 0: share of uniform illumination from outside that the body does not hide

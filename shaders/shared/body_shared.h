@@ -2,7 +2,7 @@
 #ifndef QUADGRAPH_BODY_SHARED_H
 #define QUADGRAPH_BODY_SHARED_H
 
-#include "shared/shared.h"
+#include "shared/refraction.h"
 
 #ifdef __cplusplus
 namespace quadgraph::gpu {
@@ -38,7 +38,6 @@ struct BodyRef {
   uint tet_count;
   uint face_count;
   uint flags;  // BODY_*
-  float eta;
 };
 
 // Around the faces of a node of the tree, mm.

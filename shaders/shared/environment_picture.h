@@ -11,11 +11,10 @@ namespace quadgraph::gpu {
 // Pictures of an environment, one after the other in its texels (environment.h).
 const uint ENVIRONMENT_COLUMNS = 256u;
 const uint ENVIRONMENT_ROWS = 128u;
-const uint ENVIRONMENT_ENTERING = 0u;          // irradiance that enters a face, by its normal
-const uint ENVIRONMENT_RAYS = 1u;              // radiance as the rays see it that ask what hides it
-const uint ENVIRONMENT_REFLECTED = 2u;         // radiance as a rough surface reflects it, by the mirrored view
-const uint ENVIRONMENT_REFLECTED_PLACED = 3u;  // the same where the image of a roughness is white
-const uint ENVIRONMENT_PICTURES = 4u;
+const uint ENVIRONMENT_RAYS = 0u;              // radiance as the rays see it that ask what hides it
+const uint ENVIRONMENT_REFLECTED = 1u;         // radiance as a rough surface reflects it, by the mirrored view
+const uint ENVIRONMENT_REFLECTED_PLACED = 2u;  // the same where the image of a roughness is white
+const uint ENVIRONMENT_ENTERING = 3u;          // from here on one for each index: irradiance that enters, by the normal
 
 #ifndef __cplusplus
 // Texel of a picture of an environment.

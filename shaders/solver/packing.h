@@ -130,13 +130,25 @@ QG_INLINE Sp3Block unpack_sp3(uvec4 word) {
 
 // With packed entries of SP3, which only linear elements have, a row's sum and its diagonal are not stored: both follow
 // from what the elements around the vertex say (entries.glsl), as consistent masses have two fifths of a row's sum on
-// the diagonal, and faces half. Before the first row lie k11, k12 and k22 (stored_rows.glsl).
+// the diagonal, and faces half. The boundary is that of the body that the last bits of the area name, as many as
+// `bodies` has: none where all bodies have one boundary.
 struct Sp3Row {
   vec3 stiffness;   // on the diagonal
   vec3 absorption;  // of the whole row, like the rest
   vec3 relaxation;
   float area;
 };
+
+// Before the first row.
+struct Sp3Head {
+  uvec2 boundaries;  // address of a Boundary for each body
+  uint bodies;       // bits of the area
+};
+
+// The area of a row with the number of its body, 0 where there is no area.
+QG_INLINE float area_of_body(float area, uint body, uint bodies) {
+  return uintBitsToFloat((floatBitsToUint(area) & ~bodies) | (body & bodies));
+}
 
 #ifdef __cplusplus
 }  // namespace quadgraph::gpu

@@ -3,6 +3,7 @@
 #define QUADGRAPH_SOLVE_SHARED_H
 
 #include "shared/beam_shared.h"
+#include "shared/refraction.h"
 
 // Rows per slice of an operator (sliced ELL): neighbouring invocations read neighbouring entries, and a row is padded
 // only to the longest of its slice. 32 is the width of the widest common subgroup; a processor has no neighbours.
@@ -47,6 +48,10 @@ struct Boundary {
   float k11, k12, k22;
   float source, reflected;
 };
+#ifndef __cplusplus
+QG_ARRAY(Boundaries, Boundary);
+
+#endif
 
 // Operator rows of one level, method and model, without the right-hand side: with a_e and j_e, weight and column of
 // entry e (packing.h),
@@ -62,10 +67,6 @@ struct RowsRef {
   QG_REF(Entries) row_sum;
   QG_REF(Entries) diagonal;
 };
-
-// Kinds of outside faces (engine/file/graph.h).
-const uint FACE_OPEN = 0u;
-const uint FACE_REFLECTING = 1u;
 
 // What a tet of a deformed body counts for at least (tet_volume.glsl); 0 in both: every tet counts for what it is.
 struct LeastTet {

@@ -7,13 +7,8 @@
 #include "solver/stored_entries.glsl"
 
 #if MOMENTS == 2
-// Rows beside packed entries (packing.h). `boundary`: k11, k12, k22.
-QG_HEADED_ARRAY(Sp3Rows, vec3, boundary, Sp3Row);
-
-Boundary stored_boundary(Entries a) {
-  vec3 k = Sp3Rows(uvec2(a)).boundary;
-  return Boundary(k.x, k.y, k.z, 0.0, 0.0);
-}
+// Rows beside packed entries (packing.h).
+QG_HEADED_ARRAY(Sp3Rows, Sp3Head, head, Sp3Row);
 
 #endif
 
@@ -26,7 +21,8 @@ Row load_row(Entries row_sum, Entries diagonal, uint i) {
 #if MOMENTS == 2
   if (ENTRIES == ENTRIES_PACKED) {
     Sp3Row row = Sp3Rows(uvec2(row_sum)).at[i];
-    Boundary boundary = stored_boundary(row_sum);
+    Sp3Head head = Sp3Rows(uvec2(row_sum)).head;
+    Boundary boundary = Boundaries(head.boundaries).at[floatBitsToUint(row.area) & head.bodies];
     return Row(sum_of(entry_of(vec3(0), row.absorption, row.relaxation), boundary_entry(boundary, vec3(row.area))),
                sum_of(entry_of(row.stiffness, 0.4 * row.absorption, 0.4 * row.relaxation),
                       boundary_entry(boundary, vec3(0.5 * row.area))));
@@ -62,15 +58,22 @@ Entry store_terms(RowsRef rows, uint e, vec3 stiffness, vec3 absorption, vec3 re
   return store_entry(rows, e, entry);
 }
 
+// Boundaries of all bodies, and the body of a row, 0 of one without a surface. bodies: as of Sp3Head.
+struct RowBoundary {
+  Boundaries all;
+  uint body, bodies;
+};
+
 // Row i of linear elements, from the sums of its masses, its measure of the surface, and the sum of its entries off the
 // diagonal as they are stored.
-void store_row(RowsRef rows, uint i, vec3 absorption, vec3 relaxation, float area, Boundary boundary, Entry entries) {
+void store_row(RowsRef rows, uint i, vec3 absorption, vec3 relaxation, float area, RowBoundary own, Entry entries) {
+  Boundary boundary = own.all.at[own.body];
 #if MOMENTS == 2
   if (ENTRIES == ENTRIES_PACKED) {
     Sp3Rows sp3_rows = Sp3Rows(uvec2(rows.row_sum));
     vec3 stiffness = 0.6 * absorption + 0.5 * boundary.k11 * area - entries.a11;
-    sp3_rows.at[i] = Sp3Row(stiffness, absorption, relaxation, area);
-    if (i == 0u) sp3_rows.boundary = vec3(boundary.k11, boundary.k12, boundary.k22);
+    sp3_rows.at[i] = Sp3Row(stiffness, absorption, relaxation, area_of_body(area, own.body, own.bodies));
+    if (i == 0u) sp3_rows.head = Sp3Head(uvec2(own.all), own.bodies);
     return;
   }
 #endif

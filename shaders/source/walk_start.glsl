@@ -34,11 +34,12 @@ struct OpenFace {
   mat3 corners;
   vec3 normal;
   float area;  // mm^2
+  float eta;   // of the body behind it
 };
 
 // Whether light can enter by a face.
 bool opens(uint face, out OpenFace open) {
-  if (BODY.face_kinds.at[face] != FACE_OPEN) return false;
+  if (!is_open(BODY.face_kinds, face)) return false;
   open.ids = BODY.faces.at[face];
   open.corners = corners_of(open.ids);
   vec3 doubled = cross(open.corners[1] - open.corners[0], open.corners[2] - open.corners[0]);
@@ -46,33 +47,36 @@ bool opens(uint face, out OpenFace open) {
   if (open.area == 0.0) return false;
   open.normal = doubled / (2.0 * open.area);
   open.tet = BODY.face_tets.at[face];
+  open.eta = eta_behind(BODY.face_kinds, face);
   return true;
 }
 
 struct Frame {
   vec3 position, normal, tangent;
   uint number;  // of the origin of rays, among all of the surface
+  float eta;
 };
 
 // The way light travels outside, at a point of a face.
 vec3 incoming(BeamRecord beam, uint ray, Frame at) {
   if (beam.kind == BEAM_DIRECTIONAL) return beam.travel_or_from;
   if (beam.kind == BEAM_POINT) return normalize(at.position - beam.travel_or_from);
-  if (beam.kind == BEAM_RECTANGLE) return rectangle_incoming(beam, at.position, at.normal, at.number, BODY.eta);
+  if (beam.kind == BEAM_RECTANGLE) return rectangle_incoming(beam, at.position, at.normal, at.number, at.eta);
   return lambertian_incoming(ray, at.normal, at.tangent);
 }
 
 // Share of the power of a face that one ray takes, by its number.
-float share_of(uint ray) {
-  return rays == 1u ? 1.0 : 0.5 * lambertian(BODY.eta).share[ray / 2u];
+float share_of(uint ray, float eta) {
+  return rays == 1u ? 1.0 : 0.5 * lambertian(eta).share[ray / 2u];
 }
 
-float known_mean_cosine = 0.0;  // 0: not known yet
+float known_mean_cosine = 0.0, known_for = 0.0;  // and the index that it is known for; 0: none yet
 
-float mean_cosine() {
-  if (known_mean_cosine == 0.0) {
-    Lambertian light = lambertian(BODY.eta);
+float mean_cosine(float eta) {
+  if (known_for != eta) {
+    Lambertian light = lambertian(eta);
     known_mean_cosine = dot(light.share, light.cosine);
+    known_for = eta;
   }
   return known_mean_cosine;
 }
@@ -83,19 +87,19 @@ bool turned_by_face(BeamRecord way) {
 }
 
 // Inside direction of BEAM_MEAN.
-vec3 mean_direction(vec3 normal, vec3 tangent) {
-  float cosine = mean_cosine();
-  return normalize(sqrt(1.0 - cosine * cosine) * tangent - cosine * normal);
+vec3 mean_direction(Frame at) {
+  float cosine = mean_cosine(at.eta);
+  return normalize(sqrt(1.0 - cosine * cosine) * at.tangent - cosine * at.normal);
 }
 
 // The ray inside, of power that has entered at a point of a face. A Lambertian beam by one ray goes straight down, as
 // deep as the mean of its directions: askew it would take light aside, each face to its own side.
 Ray start(BeamRecord way, uint ray, TetPoint point, Frame at, vec3 power) {
   if (way.kind == BEAM_LAMBERTIAN && rays == 1u) {
-    return Ray(point, -at.normal, power, vec3(0), 1.0 / mean_cosine());
+    return Ray(point, -at.normal, power, vec3(0), 1.0 / mean_cosine(at.eta));
   }
-  vec3 inside = way.kind == BEAM_MEAN ? mean_direction(at.normal, at.tangent)
-                                      : refracted(incoming(way, ray, at), at.normal, BODY.eta);
+  vec3 inside = way.kind == BEAM_MEAN ? mean_direction(at)
+                                      : refracted(incoming(way, ray, at), at.normal, at.eta);
   return Ray(point, inside, power, vec3(0), 1.0);
 }
 
@@ -127,12 +131,12 @@ void walk_from(Beam beam, uint face, uint ray) {
   vec3 tangent = vec3(0);
   if (turned_by_face(beam.way)) tangent = face_tangent(face, open.normal, open.corners[1] - open.corners[0]);
   bool one = one_ray_does(least, largest, open.corners, open.area);
-  float share = 0.25 * open.area * share_of(ray);
+  float share = 0.25 * open.area * share_of(ray, open.eta);
   for (uint k = one ? FACE_CENTRE : 0u; k < FACE_QUARTERS; ++k) {
     vec3 power = share * (one ? sum : q[k]);
     if (power == vec3(0)) continue;
     vec3 l = quarter_centre(k);
-    Frame at = Frame(open.corners * l, open.normal, tangent, FACE_QUARTERS * face + k);
+    Frame at = Frame(open.corners * l, open.normal, tangent, FACE_QUARTERS * face + k, open.eta);
     follow(beam.way, ray, face, start_on_face(open.tet, open.ids, l), at, power);
   }
 }

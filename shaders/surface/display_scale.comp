@@ -21,7 +21,7 @@ layout(push_constant, scalar) uniform Block { DisplayScalePush push; };
 void main() {
   vec3 solved = vec3(0), shown = vec3(0);  // integrals over the face, in units of the scale
   EACH(f, push.count) {
-    if (push.face_kinds.at[f] != FACE_OPEN) continue;
+    if (!is_open(push.face_kinds, f)) continue;
     uvec3 corners = push.faces.at[f];
     vec3 weight = push.face_area.at[f] * push.scale.at[0].inverse;
     solved += weight * push.exitance.at[f];

@@ -55,7 +55,7 @@ void main() {
     uvec3 corners = push.faces.at[i];
     vec3 p = push.vertices.at[corners.x];
     float area = 0.5 * length(cross(push.vertices.at[corners.y] - p, push.vertices.at[corners.z] - p));
-    vec3 q = push.face_kinds.at[i] == FACE_OPEN ? push.q.at[i] : vec3(0);
+    vec3 q = is_open(push.face_kinds, i) ? push.q.at[i] : vec3(0);
     vec3 exitance = push.exitance.at[i] * push.clip.at[0].factor;
     push.exitance.at[i] = exitance;
     push.face_area.at[i] = area;

@@ -32,7 +32,7 @@ vec3 brought(EvenFace face, uint v) {
 
 void main() {
   uint f = gl_GlobalInvocationID.x;
-  if (f >= push.count || push.face_kinds.at[f] != FACE_OPEN) return;
+  if (f >= push.count || !is_open(push.face_kinds, f)) return;
   EvenFace face = push.even.at[f];
   if (face.share == vec3(0)) return;
   uvec3 ids = push.faces.at[f];

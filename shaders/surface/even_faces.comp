@@ -10,12 +10,12 @@ struct EvenFacesPush {
   Vec3s vertices;  // mm
   Uvec3s faces;
   Uints face_tets;
+  Uints face_kinds;
   Opticals optical;  // per tet
   Vec3s q;           // W/mm^2, of the lights
   Vec3s exitance;    // W/mm^2
   EvenFaces even;    // written
   uint count;
-  float kept;           // share of diffuse light inside that the surface reflects back
   uint same_everywhere;  // 1: optical is
 };
 layout(push_constant, scalar) uniform Block { EvenFacesPush push; };
@@ -29,7 +29,7 @@ void main() {
   float edge = sqrt((dot(ab, ab) + dot(ac, ac) + dot(bc, bc)) / 3.0), size = length(doubled);
   Optical optical = push.optical.at[push.same_everywhere == 1u ? 0u : push.face_tets.at[f]];
   vec3 exitance = push.exitance.at[f], q = push.q.at[f];
-  vec3 near = min(near_return(optical, push.kept) * q, exitance);
+  vec3 near = min(near_return(optical, refraction_behind(push.face_kinds, f).kept) * q, exitance);
   push.even.at[f] = EvenFace(exitance - near, evened_share(optical, edge), doubled / max(size, 1e-30), 0.5 * size,
                              q == vec3(0) ? 0u : 1u);
 }

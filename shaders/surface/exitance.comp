@@ -12,6 +12,7 @@ struct ExitancePush {
   Vec3s vertices;
   Uvec3s faces;
   Uints face_kinds;
+  Boundaries boundaries;  // by body
   Fields x;
   Vec3s to_phi;
   Vec3s q;
@@ -24,7 +25,6 @@ struct ExitancePush {
   uint tet_count;
   uint fem;  // 1: fem, 0: graph methods
   uint clipped;
-  Boundary boundary;
 };
 layout(push_constant, scalar) uniform Block { ExitancePush push; };
 
@@ -33,18 +33,18 @@ struct Surface {
   vec3 phi, raw, positive;
 };
 
-Surface at_face(uint f) {
+Surface at_face(uint f, Boundary boundary) {
   if (push.fem == 0u) {
     uint node = push.tet_count + f;
     Field x = scaled(element_or_one(push.to_phi, node), push.x.at[node]);
-    vec3 flux = outward_flux(push.boundary, x);
+    vec3 flux = outward_flux(boundary, x);
     return Surface(x.phi, flux, max(flux, vec3(0)));
   }
   Surface mean = Surface(vec3(0), vec3(0), vec3(0));
   uvec3 corners = push.faces.at[f];
   for (int k = 0; k < 3; ++k) {
     Field x = scaled(element_or_one(push.to_phi, corners[k]), push.x.at[corners[k]]);
-    vec3 flux = outward_flux(push.boundary, x);
+    vec3 flux = outward_flux(boundary, x);
     mean.phi += x.phi / 3.0;
     mean.raw += flux / 3.0;
     mean.positive += max(flux, vec3(0)) / 3.0;
@@ -62,7 +62,8 @@ void main() {
   vec3 negative = vec3(0), positive = vec3(0);  // integrals over the face
   EACH(f, push.count) {
     Surface surface = Surface(vec3(0), vec3(0), vec3(0));
-    if (push.face_kinds.at[f] == FACE_OPEN) surface = at_face(f);
+    Boundary boundary = push.boundaries.at[body_behind(push.face_kinds, f)];
+    if (is_open(push.face_kinds, f)) surface = at_face(f, boundary);
     vec3 scale = push.scale.at[0].scale;
     push.phi.at[f] = surface.phi * scale;
     if (push.clipped == 1u) {
@@ -71,8 +72,8 @@ void main() {
       positive += area * surface.positive;
       push.exitance.at[f] = surface.positive * scale;
     } else {
-      bool open = push.face_kinds.at[f] == FACE_OPEN;
-      vec3 reflected = open ? push.boundary.reflected * push.q.at[f] : vec3(0);
+      bool open = is_open(push.face_kinds, f);
+      vec3 reflected = open ? boundary.reflected * push.q.at[f] : vec3(0);
       push.exitance.at[f] = surface.raw * scale - reflected;
     }
   }

@@ -11,6 +11,7 @@ struct SurfaceChangePush {
   Fields x;
   Vec3s to_phi;
   SurfaceShares share;
+  Boundaries boundaries;  // by body
   Vec3s before;
   Scales scale;
   SolveStates state;
@@ -28,7 +29,6 @@ struct SurfaceChangePush {
   float slow_rate;   // at which it has hardly fallen
   uint by_residual;  // 1: the residual has to be below the tolerance, too
   float tolerance;
-  Boundary boundary;
 };
 layout(push_constant, scalar) uniform Block { SurfaceChangePush push; };
 
@@ -85,7 +85,7 @@ void main() {
     uint carrier = push.first + i;
     SurfaceShare share = push.share.at[i];
     Field x = scaled(element_or_one(push.to_phi, carrier), push.x.at[carrier]);
-    vec3 flux = outward_flux(push.boundary, x);
+    vec3 flux = outward_flux(push.boundaries.at[share.body], x);
     vec3 m = scale * (flux - unit.inverse * share.reflected);
     vec3 change = m - push.before.at[i];
     difference_squares += dot(change, change) * share.area;

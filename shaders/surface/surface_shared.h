@@ -30,6 +30,7 @@ QG_ARRAY(EnergySumsArray, EnergySums);
 struct SurfaceShare {
   vec3 area;       // mm^2: all of it, what is unlit, and what is of the dimmest third
   vec3 reflected;  // W/mm^2: what the diffuse source reflects there, which is no part of the exitance
+  uint body;
 };
 #ifndef __cplusplus
 QG_ARRAY(SurfaceShares, SurfaceShare);

@@ -52,8 +52,8 @@ void thin_out(inout Ray ray, uint channel) {
 void meet_surface(inout Ray ray, uint face) {
   vec3 n = outward_normal(face);
   float cosine = clamp(dot(ray.direction, n), 0.0, 1.0);
-  if (BODY.face_kinds.at[face] == FACE_OPEN) {
-    float reflected = internal_reflectance(cosine, BODY.eta);
+  if (is_open(BODY.face_kinds, face)) {
+    float eta = eta_behind(BODY.face_kinds, face), reflected = internal_reflectance(cosine, eta);
     vec3 leaving = (1.0 - reflected) * ray.power;
     if (scattered || push.g != vec3(0)) {
       add_power(push.leaving, face, leaving);
@@ -64,7 +64,7 @@ void meet_surface(inout Ray ray, uint face) {
       ray.power -= leaving;
     } else if (uniform_number(state) >= reflected) {
       vec3 point = in_space(ray.at);
-      ray.power *= enter_again(through_air(face, point, leaving_direction(ray.direction, n, cosine), state), ray);
+      ray.power *= enter_again(through_air(face, point, leaving_direction(ray.direction, n, cosine, eta), state), ray);
       return;
     }
   }

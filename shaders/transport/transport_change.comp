@@ -14,6 +14,7 @@ struct TransportChangePush {
   Uints face_offset;
   Uints face_incidence;
   SurfaceShares share;
+  Boundaries boundaries;  // of the correction, by body
   Scales scale;
   Vec3s gathered;  // of transport_exitance.comp
   Vec3s change_a;  // fluence at the vertices that the solves of both halves add
@@ -24,7 +25,6 @@ struct TransportChangePush {
   Reduction reduction;
   uint count;
   uint face_count;
-  float k11;
   uint ahead;   // 1: what the solves add is the change; 0: all that the exitance before lacks
   uint solves;  // 1: the noise is that of the solves alone, which spreads over the body; 0: with that of G
 };
@@ -38,13 +38,13 @@ vec3 at_face(Vec3s field, uint face) {
 void main() {
   mat3 sums = mat3(0.0);  // of change, noise, size
   Scale unit = push.scale.at[0];
-  vec3 gain = push.k11 * push.books.at[0].gain;
   // One factor for all channels, which are weighed alike.
   vec3 colours = unit.scale / max(unit.scale.x, max(unit.scale.y, unit.scale.z));
   EACH(v, push.count) {
     vec3 a = vec3(0), b = vec3(0), before_a = vec3(0), before_b = vec3(0), difference = vec3(0);
     vec3 solved_a = vec3(0), solved_b = vec3(0);
     float around = 0.0;
+    vec3 gain = push.boundaries.at[push.share.at[v].body].k11 * push.books.at[0].gain;
     for (uint k = push.face_offset.at[v]; k < push.face_offset.at[v + 1u]; ++k) {
       uint face = push.face_incidence.at[k];
       float area = area_of(push.faces, push.vertices, face);

@@ -28,7 +28,7 @@ struct Surface {
   uvec3 ids;
   mat3 corners;
   vec3 normal, tangent, side;
-  float area;
+  float area, eta;
 };
 
 vec3 left, entered_again;  // of the face, over its area
@@ -37,15 +37,15 @@ vec3 left, entered_again;  // of the face, over its area
 void add_leaving(Surface at, float stratum, float azimuth, inout uint state) {
   float u = (stratum + uniform_number(state)) / float(push.rays);
   float s = sqrt(uniform_number(state)), t = uniform_number(state);
-  float cosine = sqrt(1.0 - (1.0 - u) / (BODY.eta * BODY.eta));
+  float cosine = sqrt(1.0 - (1.0 - u) / (at.eta * at.eta));
   vec3 across = cos(azimuth) * at.tangent + sin(azimuth) * at.side;
-  vec3 inside = normalize(sqrt(1.0 - u) / BODY.eta * across - cosine * at.normal);
+  vec3 inside = normalize(sqrt(1.0 - u) / at.eta * across - cosine * at.normal);
   vec3 l = vec3(1.0 - s, s * (1.0 - t), s * t);
   vec3 before, now = arriving(ray_from(start_on_face(at.tet, at.ids, l), inside, hash(state)), before);
-  vec3 leaves = fresnel_transmittance(sqrt(u), BODY.eta) * (now - before);
+  vec3 leaves = fresnel_transmittance(sqrt(u), at.eta) * (now - before);
   left += leaves;
   if (!sees_body(at.face)) return;
-  Entrance entry = through_air(at.face, at.corners * l, leaving_direction(-inside, at.normal, cosine), state);
+  Entrance entry = through_air(at.face, at.corners * l, leaving_direction(-inside, at.normal, cosine, at.eta), state);
   if (entry.face != NO_FACE) entered_again += leaves;
 }
 
@@ -62,7 +62,7 @@ void main() {
   if (i >= TRANSPORT_HALVES * BODY.face_count) return;
   Surface at;
   at.face = i % BODY.face_count;
-  if (BODY.face_kinds.at[at.face] != FACE_OPEN) return;
+  if (!is_open(BODY.face_kinds, at.face)) return;
   at.ids = BODY.faces.at[at.face];
   at.corners = mat3(BODY.vertices.at[at.ids.x], BODY.vertices.at[at.ids.y], BODY.vertices.at[at.ids.z]);
   vec3 doubled = cross(at.corners[1] - at.corners[0], at.corners[2] - at.corners[0]);
@@ -72,12 +72,13 @@ void main() {
   at.tangent = normalize(at.corners[1] - at.corners[0]);
   at.side = cross(at.normal, at.tangent);
   at.tet = BODY.face_tets.at[at.face];
+  at.eta = eta_behind(BODY.face_kinds, at.face);
   uint state = hash(i ^ hash(push.seed));
   float turned = TWO_PI * uniform_number(state);
   left = vec3(0);
   entered_again = vec3(0);
   for (uint k = 0u; k < push.rays; ++k) add_leaving(at, float(k), turned + GOLDEN_ANGLE * float(k), state);
-  float share = 1.0 / (4.0 * BODY.eta * BODY.eta * float(push.rays));
+  float share = 1.0 / (4.0 * at.eta * at.eta * float(push.rays));
   push.exitance.at[i] = kept(push.exitance.at[i]) + share * left;
   add_sums(share * at.area);
   atomicAdd(field.segments.at[0], crossed);

@@ -14,6 +14,7 @@ struct TransportFacesPush {
   Uints face_tets;
   Opticals optical;  // per tet, or one
   Uints face_kinds;
+  Boundaries boundaries;  // of the correction, by body
   Scales scale;
   Vec3s gathered;  // of transport_exitance.comp
   Vec3s change_a;  // fluence at the vertices that the solves of both halves add
@@ -23,8 +24,6 @@ struct TransportFacesPush {
   Vec3s exitance;  // W/mm^2, written
   uint count;
   uint even;  // 1: optical is the same everywhere
-  float k11;
-  float eta;
 };
 layout(push_constant, scalar) uniform Block { TransportFacesPush push; };
 
@@ -42,19 +41,19 @@ float depth_of(uint f, uint t) {
 
 void main() {
   uint f = gl_GlobalInvocationID.x;
-  if (f >= push.count || push.face_kinds.at[f] != FACE_OPEN) return;
+  if (f >= push.count || !is_open(push.face_kinds, f)) return;
   uvec3 ids = push.faces.at[f];
   vec3 change_a = vec3(0), change_b = vec3(0);
   for (uint k = 0u; k < 3u; ++k) {
     change_a += push.change_a.at[ids[k]] / 3.0;
     change_b += push.change_b.at[ids[k]] / 3.0;
   }
-  vec3 unit = push.scale.at[0].scale, gain = push.k11 * push.books.at[0].gain;
+  vec3 unit = push.scale.at[0].scale, gain = push.boundaries.at[body_behind(push.face_kinds, f)].k11 * push.books.at[0].gain;
   vec3 a = unit * (push.gathered.at[f] + gain * change_a);
   vec3 b = unit * (push.gathered.at[push.count + f] + gain * change_b);
   push.halves.at[f] = a;
   push.halves.at[push.count + f] = b;
   uint t = push.face_tets.at[f];
   Optical optical = push.optical.at[push.even == 1u ? 0u : t];
-  push.exitance.at[f] = 0.5 * (a + b) / seen_of_element(optical, depth_of(f, t), push.eta);
+  push.exitance.at[f] = 0.5 * (a + b) / seen_of_element(optical, depth_of(f, t), eta_behind(push.face_kinds, f));
 }

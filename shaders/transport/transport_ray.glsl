@@ -99,17 +99,21 @@ Way across_tet(inout Ray ray, inout vec3 sum, inout vec3 before) {
 bool goes_past(uint face, inout Ray ray) {
   vec3 n = outward_normal(face);
   float cosine = clamp(dot(ray.direction, n), 0.0, 1.0);
-  if (BODY.face_kinds.at[face] == FACE_OPEN) {
-    float reflected = internal_reflectance(cosine, BODY.eta);
+  if (is_open(BODY.face_kinds, face)) {
+    float eta = eta_behind(BODY.face_kinds, face), reflected = internal_reflectance(cosine, eta);
     if (!sees_body(face)) {
       ray.left *= reflected;
       ray.left_before *= reflected;
       if (reflected == 0.0) return false;
     } else if (uniform_number(ray.state) >= reflected) {
-      Entrance entry = through_air(face, in_space(ray.at), leaving_direction(ray.direction, n, cosine), ray.state);
+      Entrance entry = through_air(face, in_space(ray.at), leaving_direction(ray.direction, n, cosine, eta), ray.state);
       if (entry.face == NO_FACE) return false;
       ray.at = entrance_point(entry);
       ray.direction = entry.direction;
+      // From one medium to another radiance over the square of the index is kept.
+      float there = eta_behind(BODY.face_kinds, entry.face), kept = eta * eta / (there * there);
+      ray.left *= kept;
+      ray.left_before *= kept;
       return true;
     }
   }

@@ -31,7 +31,7 @@ void main() {
   EACH(f, push.count) {
     uvec3 ids = push.faces.at[f];
     vec3 phi = (push.fluence.at[ids.x] + push.fluence.at[ids.y] + push.fluence.at[ids.z]) / 3.0;
-    bool open = push.face_kinds.at[f] == FACE_OPEN;
+    bool open = is_open(push.face_kinds, f);
     push.phi.at[f] = open ? phi * push.scale.at[0].scale : vec3(0);
     vec3 m = open ? push.corrected.at[f] : vec3(0);
     vec3 taken = max(mix(push.exitance.at[f], m, push.q.at[f] == vec3(0) ? push.taken_unlit : push.taken_lit), vec3(0));

@@ -25,9 +25,9 @@ bool sees_body(uint face) {
 }
 
 // Outside, for a direction that leaves at inside cosine `cosine`.
-vec3 leaving_direction(vec3 direction, vec3 n, float cosine) {
-  float outside = sqrt(max(1.0 - BODY.eta * BODY.eta * (1.0 - cosine * cosine), 0.0));
-  return normalize(BODY.eta * (direction - cosine * n) + outside * n);
+vec3 leaving_direction(vec3 direction, vec3 n, float cosine, float eta) {
+  float outside = sqrt(max(1.0 - eta * eta * (1.0 - cosine * cosine), 0.0));
+  return normalize(eta * (direction - cosine * n) + outside * n);
 }
 
 // Where a ray enters the body.
@@ -59,8 +59,9 @@ Entrance through_air(uint face, vec3 point, vec3 direction, inout uint state) {
     point += hit.distance * direction;
     vec3 n = outward_normal(face);
     float cosine = clamp(-dot(direction, n), 0.0, 1.0);
-    if (BODY.face_kinds.at[face] == FACE_OPEN && uniform_number(state) < fresnel_transmittance(cosine, BODY.eta)) {
-      return Entrance(face, clamp(hit.place, vec2(0), vec2(1)), refracted(direction, n, BODY.eta));
+    float eta = eta_behind(BODY.face_kinds, face);
+    if (is_open(BODY.face_kinds, face) && uniform_number(state) < fresnel_transmittance(cosine, eta)) {
+      return Entrance(face, clamp(hit.place, vec2(0), vec2(1)), refracted(direction, n, eta));
     }
     direction = normalize(direction + 2.0 * cosine * n);
   }

@@ -30,8 +30,8 @@ TransportFieldRef field;
 void meet_surface(inout Ray ray, uint face) {
   vec3 n = outward_normal(face);
   float cosine = dot(ray.direction, n);
-  if (BODY.face_kinds.at[face] == FACE_OPEN) {
-    float reflected = internal_reflectance(cosine, BODY.eta);
+  if (is_open(BODY.face_kinds, face)) {
+    float eta = eta_behind(BODY.face_kinds, face), reflected = internal_reflectance(cosine, eta);
     if (!sees_body(face)) {
       vec3 kept = ray.power * reflected;
       unscattered += ray.power - kept;
@@ -39,7 +39,7 @@ void meet_surface(inout Ray ray, uint face) {
     } else if (uniform_number(state) >= reflected) {
       unscattered += ray.power;
       vec3 point = in_space(ray.at);
-      ray.power *= enter_again(through_air(face, point, leaving_direction(ray.direction, n, cosine), state), ray);
+      ray.power *= enter_again(through_air(face, point, leaving_direction(ray.direction, n, cosine, eta), state), ray);
       entered_again += ray.power;
       return;
     }

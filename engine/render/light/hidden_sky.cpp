@@ -25,7 +25,7 @@ void HiddenSky::make_room(Simulation& simulation, std::uint32_t level, std::uint
   }
 }
 
-PassStats HiddenSky::run(Simulation& simulation, const ShadowMaps& lights, std::uint32_t environments, float eta) {
+PassStats HiddenSky::run(Simulation& simulation, const ShadowMaps& lights, std::uint32_t environments) {
   PassStats stats{.name = "hidden environment"};
   const std::optional<SeenRows> seen = simulation.seen();
   if (!seen) {
@@ -39,6 +39,7 @@ PassStats HiddenSky::run(Simulation& simulation, const ShadowMaps& lights, std::
   commands.dispatch(hide_,
                     gpu::EnvironmentHiddenPush{.vertices = level.vertices.address(),
                                                .faces = level.faces.address(),
+                                               .face_kinds = level.face_kind.address(),
                                                .rows = seen->rows.address(),
                                                .entries = seen->entries.address(),
                                                .lights = lights.lights().address(),
@@ -46,8 +47,7 @@ PassStats HiddenSky::run(Simulation& simulation, const ShadowMaps& lights, std::
                                                .hidden = hidden_[seen->level].address(),
                                                .face_count = level.face_count,
                                                .light_count = lights.light_count(),
-                                               .rays = static_cast<float>(seen->rays),
-                                               .eta = eta},
+                                               .rays = static_cast<float>(seen->rays)},
                     level.face_count);
   stats.bytes = seen->entries.size() + seen->rows.size() + hidden_[seen->level].size();
   for (std::uint32_t i = seen->level; i-- > 0;) {

@@ -17,7 +17,7 @@ class HiddenSky {
   HiddenSky(device::Device& device, const QuadGraph& graph);
 
   // For all environments of `lights`, as many as `environments`, from where the simulation's rays are now.
-  PassStats run(Simulation& simulation, const ShadowMaps& lights, std::uint32_t environments, float eta);
+  PassStats run(Simulation& simulation, const ShadowMaps& lights, std::uint32_t environments);
 
   // Address of the last run's result for a level, vec3 per environment and face: what is hidden of q, over the light's
   // power; 0 where nothing is known.

@@ -1,7 +1,6 @@
 #include "engine/render/light/irradiance.h"
 
 #include "engine/device/commands.h"
-#include "engine/optics/fresnel.h"
 #include "interface/light/irradiance.comp.h"
 
 namespace quadgraph {
@@ -31,11 +30,12 @@ const device::ComputePass& IrradiancePass::pass(bool shaped) {
   return *shaped_;
 }
 
-PassStats IrradiancePass::run(const LevelBuffers& buffers, std::uint32_t level, const ShadowMaps& shadows, float eta,
+PassStats IrradiancePass::run(const LevelBuffers& buffers, std::uint32_t level, const ShadowMaps& shadows,
                               std::uint64_t hidden, bool rough) {
   const std::uint32_t subdivision = subdivision_of(level, buffers.face_count, rough);
   const gpu::IrradiancePush push{.vertices = buffers.vertices.address(),
                                  .faces = buffers.faces.address(),
+                                 .face_kinds = buffers.face_kind.address(),
                                  .q = buffers.q.address(),
                                  .beam_q = buffers.beam_q.address(),
                                  .sky = buffers.sky.address(),
@@ -45,9 +45,7 @@ PassStats IrradiancePass::run(const LevelBuffers& buffers, std::uint32_t level, 
                                  .views = shadows.views().address(),
                                  .face_count = buffers.face_count,
                                  .light_count = shadows.light_count(),
-                                 .subdivision = subdivision,
-                                 .eta = eta,
-                                 .diffuse_transmittance = static_cast<float>(diffuse_transmittance(eta))};
+                                 .subdivision = subdivision};
   device::Commands commands(device_, 1);
   commands.begin_pass("irradiance");
   commands.dispatch(pass(shadows.shaped()), push, buffers.face_count);

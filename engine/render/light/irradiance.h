@@ -23,8 +23,8 @@ class IrradiancePass {
   // `level` counts from the finest, 0; faces of coarser levels are sampled more finely. `hidden` as
   // HiddenSky::hidden. `rough`: in motion, coarser levels as the finest, and of many faces, which are small,
   // each quarter by one sample instead of four.
-  PassStats run(const LevelBuffers& buffers, std::uint32_t level, const ShadowMaps& shadows, float eta,
-                std::uint64_t hidden = 0, bool rough = false);
+  PassStats run(const LevelBuffers& buffers, std::uint32_t level, const ShadowMaps& shadows, std::uint64_t hidden = 0,
+                bool rough = false);
 
  private:
   const device::ComputePass& pass(bool shaped);

@@ -31,9 +31,16 @@ void write_picture(device::Device& device, EnvironmentImage& image, std::uint32_
   device::write_bytes(device, image.texels, std::as_bytes(std::span(image.pictures)));
 }
 
+// Room for so many pictures, of which those that are there stay.
+void make_room(device::Device& device, EnvironmentImage& image, std::size_t pictures) {
+  if (image.texels.size() == pictures * picture_texels * sizeof(glm::vec3)) return;
+  image.pictures.resize(pictures * picture_texels);
+  image.texels = device::upload<glm::vec3>(device, image.pictures, "light/environment");
+}
+
 EnvironmentImage upload_environment(device::Device& device, Image&& picture) {
   EnvironmentImage image{
-      environment_of(std::move(picture)), std::vector<glm::vec3>(gpu::ENVIRONMENT_PICTURES * picture_texels), {}};
+      environment_of(std::move(picture)), std::vector<glm::vec3>((gpu::ENVIRONMENT_ENTERING + 1) * picture_texels), {}};
   image.texels = {device, image.pictures.size() * sizeof(glm::vec3), device::Place::device, "light/environment"};
   write_picture(device, image, gpu::ENVIRONMENT_RAYS, ray_degrees(environment_degree));
   return image;
@@ -83,10 +90,15 @@ void LightImages::load(std::span<const Light> lights) {
   environments_ = std::move(environments);
 }
 
-void LightImages::set_eta(float eta) {
+void LightImages::set_eta(std::span<const float> eta) {
   const auto entering = [](float index) { return irradiance_degrees(index, irradiance_degree); };
   for (auto& [file, loaded] : environments_) {
-    renew_picture(device_, loaded.image, gpu::ENVIRONMENT_ENTERING, loaded.image.eta, eta, entering);
+    EnvironmentImage& image = loaded.image;
+    make_room(device_, image, gpu::ENVIRONMENT_ENTERING + eta.size());
+    image.eta.resize(eta.size());
+    for (std::uint32_t i = 0; i < eta.size(); ++i) {
+      renew_picture(device_, image, gpu::ENVIRONMENT_ENTERING + i, image.eta[i], eta[i], entering);
+    }
   }
 }
 

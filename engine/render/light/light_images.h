@@ -24,8 +24,9 @@ struct ProjectedImage {
 struct EnvironmentImage {
   Environment environment;
   std::vector<glm::vec3> pictures;
-  device::Buffer texels;                               // the same
-  float eta = 0, roughness = 0, placed_roughness = 0;  // what the pictures are for; 0: none yet
+  device::Buffer texels;                      // the same
+  std::vector<float> eta{};                   // what the pictures are for: from ENVIRONMENT_ENTERING on
+  float roughness = 0, placed_roughness = 0;  // the same; 0: none yet
 };
 
 class LightImages {
@@ -40,9 +41,9 @@ class LightImages {
   const ProjectedImage& projected(const std::string& file) const { return projected_.at(file).image; }
   const EnvironmentImage& environment(const std::string& file) const { return environments_.at(file).image; }
 
-  // Brings the pictures of environments up to date that depend on the index of refraction; on the roughness of the
-  // surface, and on that where an image says so, 0 without one.
-  void set_eta(float eta);
+  // Brings the pictures of environments up to date that depend on the indices of refraction, each given once; on the
+  // roughness of the surface, and on that where an image says so, 0 without one.
+  void set_eta(std::span<const float> eta);
   void set_roughness(float roughness, float placed);
 
  private:

@@ -11,9 +11,10 @@ const device::ComputePass& LightSamples::pass(bool shaped) {
   return *pass;
 }
 
-PassStats LightSamples::run(const LevelBuffers& level, const ShadowMaps& lights, const LightRoom& room, float eta) {
+PassStats LightSamples::run(const LevelBuffers& level, const ShadowMaps& lights, const LightRoom& room) {
   gpu::LightErrorPush push{.vertices = level.vertices.address(),
                            .faces = level.faces.address(),
+                           .face_kinds = level.face_kind.address(),
                            .beam_q = level.beam_q.address(),
                            .sky = level.sky.address(),
                            .beams = room.beams.address(),
@@ -22,11 +23,9 @@ PassStats LightSamples::run(const LevelBuffers& level, const ShadowMaps& lights,
                            .views = lights.views().address(),
                            .tree = room.tree,
                            .difference = room.difference.address(),
-                           .face_count = level.face_count,
                            .light_count = lights.light_count(),
                            .rays = room.rays,
                            .turn = 0,
-                           .eta = eta,
                            .sky_share = room.sky_share};
   device::Commands commands(device_, 1);
   commands.begin_pass("light error");

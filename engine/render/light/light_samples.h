@@ -15,7 +15,7 @@ class LightSamples {
   explicit LightSamples(device::Device& device) : device_(device) {}
 
   // Writes room.difference from q and beam_q of `level`, which these lights have made.
-  PassStats run(const LevelBuffers& level, const ShadowMaps& lights, const LightRoom& room, float eta);
+  PassStats run(const LevelBuffers& level, const ShadowMaps& lights, const LightRoom& room);
 
  private:
   const device::ComputePass& pass(bool shaped);

@@ -36,7 +36,7 @@ void check(const Level& level, std::span<const std::uint32_t> face, std::span<co
 
 RadianceProbe::RadianceProbe(device::Device& device) : device_(device), pass_(device, shader::radiance_probe) {}
 
-Leaving RadianceProbe::run(const Level& level, const GatherField& field, float eta, std::span<const std::uint32_t> face,
+Leaving RadianceProbe::run(const Level& level, const GatherField& field, std::span<const std::uint32_t> face,
                            std::span<const glm::vec3> direction) {
   check(level, face, direction);
   const device::Buffer faces = device::upload(device_, face, "probe/faces");
@@ -50,8 +50,7 @@ Leaving RadianceProbe::run(const Level& level, const GatherField& field, float e
                                     .direction = directions.address(),
                                     .radiance = radiance.address(),
                                     .transmittance = transmittance.address(),
-                                    .count = static_cast<std::uint32_t>(face.size()),
-                                    .radiance_norm = static_cast<float>(radiance_norm(eta))};
+                                    .count = static_cast<std::uint32_t>(face.size())};
   device::Commands commands(device_);
   commands.dispatch(pass_, push, face.size());
   commands.submit_and_wait();

@@ -21,7 +21,7 @@ class RadianceProbe {
 
   // At the centroids of outside faces along unit directions. Throws InputError for a face that is not there or a
   // direction that is not unit and outward.
-  Leaving run(const Level& level, const GatherField& field, float eta, std::span<const std::uint32_t> face,
+  Leaving run(const Level& level, const GatherField& field, std::span<const std::uint32_t> face,
               std::span<const glm::vec3> direction);
 
  private:

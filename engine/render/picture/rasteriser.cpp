@@ -29,15 +29,16 @@ gpu::SurfaceScene scene(const RasterInput& input, const Camera& camera) {
                           .origin = camera.origin,
                           .eye = camera.seen_from(),
                           .reach = camera.reach,
-                          .eta = input.eta,
+                          .eta = 0,
+                          .radiance_norm = 0,
                           .roughness = input.roughness,
-                          .radiance_norm = static_cast<float>(radiance_norm(input.eta)),
                           .light_count = input.shadows.light_count(),
                           .vertices = input.mesh.vertices.address(),
                           .normals = input.mesh.normals.address(),
                           .face = input.mesh.face.address(),
                           .barycentric = input.mesh.barycentric.address(),
                           .faces = input.finest.faces.address(),
+                          .face_kinds = input.finest.face_kind.address(),
                           .exitance = input.vertex_exitance.address(),
                           .unscattered = input.vertex_unscattered.address(),
                           .sky = input.finest.sky.address(),
@@ -133,16 +134,6 @@ struct Rasteriser::Targets {
   device::Image depth;
   std::vector<device::Buffer> samples;  // the same, of what a tile covers, where images are not read in place
 };
-
-double radiance_norm(double eta) {
-  constexpr int steps = 4096;
-  double sum = 0;
-  for (int i = 0; i < steps; ++i) {
-    const double cos_o = (i + 0.5) / steps;
-    sum += fresnel_transmittance(cos_o, eta) * cos_o;
-  }
-  return 2 * std::numbers::pi * sum / steps;
-}
 
 Rasteriser::Rasteriser(device::Device& device) : device_(device), resolve_(device, shader::resolve) {}
 

@@ -20,10 +20,6 @@
 
 namespace quadgraph {
 
-// Integral of F_t(cos, eta) cos over the hemisphere, sr: what exitance is divided by to give radiance along F_t, so
-// that it integrates back to the exitance (docs/physics.md, "Gathered radiance"). pi for eta = 1.
-double radiance_norm(double eta);
-
 // For radiance gathered along view rays.
 struct GatherView {
   const GatherField& field;
@@ -46,7 +42,6 @@ struct RasterInput {
   const device::Buffer& vertex_exitance;     // vec3 per surface vertex of the finest level, W/mm^2
   const device::Buffer& vertex_unscattered;  // the same
   const ShadowMaps& shadows;
-  float eta = 1;
   float roughness = 0.3f;                             // alpha of GGX
   const PlacedRoughness* placed_roughness = nullptr;  // null: the same everywhere
   const GatherView* gather = nullptr;                 // null: radiance as of a diffuser

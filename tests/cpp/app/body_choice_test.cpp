@@ -3,8 +3,6 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/optics/material.h"
-
 using namespace quadgraph;
 
 TEST_CASE("a material goes to the body that was chosen, or to all") {
@@ -26,18 +24,6 @@ TEST_CASE("a material goes to the body that was chosen, or to all") {
   CHECK(chosen_material(state) == "marble");
 }
 
-TEST_CASE("a named material gets the index of the bodies that stay as they are") {
-  State state;
-  take_bodies(state, {"cup", "stone"});
-  state.scene.material = "marble";                     // 1.5
-  CHECK(at_index_of_others(state, "jade") == "jade");  // of all bodies
-  state.body = "stone";
-  CHECK(at_index_of_others(state, "wood") == "wood");  // which has the same
-  CHECK(parse_material(at_index_of_others(state, "jade")).eta == 1.5f);
-  state.scene.materials["cup"] = "skin1";
-  CHECK(parse_material(at_index_of_others(state, "jade")).eta == 1.3f);
-}
-
 TEST_CASE("another file has other bodies") {
   State state;
   take_bodies(state, {"cup", "stone"});
@@ -46,5 +32,4 @@ TEST_CASE("another file has other bodies") {
   CHECK(state.body == "stone");
   take_bodies(state, {});
   CHECK(state.body.empty());
-  CHECK(at_index_of_others(state, "jade") == "jade");
 }

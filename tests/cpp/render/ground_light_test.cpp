@@ -11,6 +11,7 @@
 
 #include "shaders/display/ground_shared.h"
 #include "tests/cpp/fixtures/checked_context.h"
+#include "tests/cpp/fixtures/one_body.h"
 #include "tests/cpp/fixtures/render_shapes.h"
 
 using namespace quadgraph;
@@ -22,9 +23,8 @@ constexpr std::uint32_t side = gpu::GROUND_LIGHT_SIZE;
 // Over the ground at height 0 of the axis that points up.
 std::vector<glm::vec4> lit(const Shape& shape, const glm::vec3& exitance, const GroundPart& part) {
   const CheckedContext checked;
-  LevelBuffers level = upload_as_level(checked.context, shape, 0);
-  const std::vector<std::uint32_t> open(shape.faces.size(), face_open);
-  level.face_kind = device::upload<std::uint32_t>(checked.context, open, "kinds");
+  const OneBody refractions(checked.context, 1);
+  const LevelBuffers level = upload_as_level(checked.context, shape, 0, refractions);
   const std::vector<glm::vec3> values(shape.faces.size(), exitance);
   const auto leaving = device::upload<glm::vec3>(checked.context, values, "exitance");
   Level at_rest;

@@ -9,6 +9,7 @@
 #include "engine/base/error.h"
 #include "engine/optics/fresnel.h"
 #include "tests/cpp/fixtures/checked_context.h"
+#include "tests/cpp/fixtures/one_body.h"
 #include "tests/cpp/fixtures/render_shapes.h"
 
 using namespace quadgraph;
@@ -20,10 +21,11 @@ constexpr float pi = std::numbers::pi_v<float>;
 std::vector<glm::vec3> irradiance(device::Device& context, const Shape& shape, const std::vector<Light>& lights,
                                   float eta) {
   const DisplayBuffers mesh = upload_as_display(context, shape);
-  const LevelBuffers level = upload_as_level(context, shape, lights.size());
+  const OneBody refractions(context, eta);
+  const LevelBuffers level = upload_as_level(context, shape, lights.size(), refractions);
   ShadowMaps shadows(context);
   shadows.update(mesh, {lights, bounding_sphere(shape.vertices)});
-  IrradiancePass(context).run(level, 0, shadows, eta);
+  IrradiancePass(context).run(level, 0, shadows);
   return device::download<glm::vec3>(context, level.q);
 }
 
@@ -148,11 +150,12 @@ TEST_CASE("many lights bring what one brings, within the memory of their maps") 
   const auto with = [&](std::size_t count) {
     const Light light{.direction = glm::normalize(glm::vec3(1, 2, 3)), .power = glm::vec3(1.0f / count)};
     const std::vector<Light> lights(count, light);
-    const LevelBuffers level = upload_as_level(checked.context, shape, count);
+    const OneBody refractions(checked.context, 1);
+    const LevelBuffers level = upload_as_level(checked.context, shape, count, refractions);
     ShadowMaps shadows(checked.context);
     shadows.update(mesh, {lights, bounding_sphere(shape.vertices)});
     CHECK(checked.context.allocated_by_purpose().at("shadows") < most_map_bytes + (64u << 20));
-    IrradiancePass(checked.context).run(level, 0, shadows, 1.0f);
+    IrradiancePass(checked.context).run(level, 0, shadows);
     return entered(shape, device::download<glm::vec3>(checked.context, level.q)).x;
   };
   CHECK(with(150) == doctest::Approx(with(1)).epsilon(1e-3));
@@ -173,8 +176,9 @@ TEST_CASE("a shadow map is drawn again only where its view or the mesh has chang
   const auto check = [&](const std::vector<Light>& lights, const Shape& present, std::uint32_t drawn) {
     const LightSet set(lights, bounding_sphere(present.vertices));
     CHECK(shadows.update(mesh, set).count == drawn);
-    const LevelBuffers level = upload_as_level(context, present, lights.size());
-    IrradiancePass(context).run(level, 0, shadows, 1.0f);
+    const OneBody refractions(context, 1);
+    const LevelBuffers level = upload_as_level(context, present, lights.size(), refractions);
+    IrradiancePass(context).run(level, 0, shadows);
     CHECK(device::download<glm::vec3>(context, level.q) == irradiance(context, present, lights, 1.0f));
   };
   check({sun(0), lamp}, shape, 2);
@@ -194,10 +198,11 @@ TEST_CASE("in motion coarser levels are sampled as the finest is, and many faces
   device::Device& context = checked.context;
   const std::vector<Light> sun = {Light{.direction = glm::normalize(glm::vec3(1, 2, 3)), .power = glm::vec3(1)}};
   const auto q_of = [&](const Shape& shape, std::uint32_t number, bool rough) {
-    const LevelBuffers level = upload_as_level(context, shape, 1);
+    const OneBody refractions(context, 1.3f);
+    const LevelBuffers level = upload_as_level(context, shape, 1, refractions);
     ShadowMaps shadows(context);
     shadows.update(upload_as_display(context, shape), {sun, bounding_sphere(shape.vertices)});
-    IrradiancePass(context).run(level, number, shadows, 1.3f, 0, rough);
+    IrradiancePass(context).run(level, number, shadows, 0, rough);
     return device::download<glm::vec3>(context, level.q);
   };
   Shape few = sphere({0, 0, 0}, 10, 3), many = sphere({0, 0, 0}, 10, 6);
@@ -222,10 +227,11 @@ TEST_CASE("every light has its own quarters, which make up q") {
   device::Device& context = checked.context;
   const Shape shape = sphere({0, 0, 0}, 10, 1);
   const std::vector<Light> lights = {parse_light("point:0,0,14:5000/100/0"), parse_light("directional:0,-1,0:0/1/3")};
-  const LevelBuffers level = upload_as_level(context, shape, lights.size());
+  const OneBody refractions(context, 1);
+  const LevelBuffers level = upload_as_level(context, shape, lights.size(), refractions);
   ShadowMaps shadows(context);
   shadows.update(upload_as_display(context, shape), {lights, bounding_sphere(shape.vertices)});
-  IrradiancePass(context).run(level, 0, shadows, 1.0f);
+  IrradiancePass(context).run(level, 0, shadows);
   const auto q = device::download<glm::vec3>(context, level.q);
   const auto shares = device::download<float>(context, level.beam_q);
   REQUIRE(shares.size() == lights.size() * FACE_QUARTERS * shape.faces.size());
@@ -319,13 +325,14 @@ TEST_CASE("ambient light comes from the share of the sky that a face sees") {
   Light ambient;
   ambient.kind = LightKind::ambient;
   ambient.power = {1, 2, 3};
-  LevelBuffers level = upload_as_level(context, shape, 1);
+  const OneBody refractions(context, 1.3f);
+  LevelBuffers level = upload_as_level(context, shape, 1, refractions);
   std::vector<float> sky;
   for (std::size_t f = 0; f < shape.faces.size(); ++f) sky.push_back(static_cast<float>(f % 5) / 4.0f);
   level.sky = device::upload<float>(context, sky, "sky");
   ShadowMaps shadows(context);
   shadows.update(mesh, {{&ambient, 1}, bounding_sphere(shape.vertices)});
-  IrradiancePass(context).run(level, 0, shadows, 1.3f);
+  IrradiancePass(context).run(level, 0, shadows);
   const auto q = device::download<glm::vec3>(context, level.q);
   const auto entering = static_cast<float>(diffuse_transmittance(1.3));
   for (std::size_t f = 0; f < q.size(); ++f) {

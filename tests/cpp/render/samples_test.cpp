@@ -58,6 +58,7 @@ std::vector<float> ball_through_lens(float away, float radius, double aperture, 
       .azimuth = 0, .elevation = 0, .vertical_fov = 10, .eye = glm::vec3(0, 0, 100), .look_at = glm::vec3(0)};
   const Sphere bounds = bounding_sphere(stage.shape.vertices);
   stage.shadows.update(stage.mesh, {{}, bounds});
+  stage.refractions.become(1.3f);
   const Camera camera = place_camera(view, bounds, 1);
   PictureMean mean(stage.context);
   for (std::uint32_t i = 0; i < frames; ++i) {
@@ -66,8 +67,7 @@ std::vector<float> ball_through_lens(float away, float radius, double aperture, 
                           .finest = stage.level,
                           .vertex_exitance = stage.exitance,
                           .vertex_unscattered = stage.unscattered,
-                          .shadows = stage.shadows,
-                          .eta = 1.3f},
+                          .shadows = stage.shadows},
                          moved(camera, 2.0 * offset.pixel / double{wide}, 0.5 * aperture * offset.lens, focus), wide,
                          wide);
     mean.add(stage.rasteriser.picture(), i);

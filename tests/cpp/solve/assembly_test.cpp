@@ -12,6 +12,7 @@
 #include "engine/solve/row_structure.h"
 #include "shaders/assemble/assembly_shared.h"
 #include "shaders/solver/packing.h"
+#include "tests/cpp/fixtures/one_body.h"
 #include "tests/cpp/fixtures/solve_fixtures.h"
 
 using namespace quadgraph;
@@ -29,6 +30,7 @@ struct Assembled {
   Level level;
   std::vector<gpu::Optical> optical;
   Problem problem;
+  OneBody refractions;
   LevelBuffers buffers;
   OperatorBuffers op;
   Workspace work;
@@ -38,15 +40,18 @@ struct Assembled {
       : level(with_walls(owned)),
         optical(evaluate_material(level, even ? homogeneous() : veined())),
         problem{method, Source::diffuse, model, optical, veined().eta},
-        buffers(upload_level(device.context, level, 0)),
+        refractions(device.context, veined().eta),
+        buffers(upload_level(device.context, level, 0, refractions)),
         op(device.context, level, 0, method, model, format_of(level, method)),
         work(device.context, level.node_count()) {
     upload_graph(device.context, level, 0, buffers);
     buffers.optical = device::upload<gpu::Optical>(device.context, optical, "optical");
     op.make_room(device.context, level, even, false);
-    record_assembly(work, buffers, method, problem.boundary(), even, op);
+    record_assembly(work, buffers, method, boundaries(), even, op);
     work.recorder.submit();
   }
+
+  const BodyBoundaries& boundaries() { return refractions.boundaries(problem.method, problem.source, problem.model); }
 
   static Level with_walls(OwnedLevel& owned) {
     for (std::size_t f = 0; f < owned.faces.size(); ++f) {
@@ -70,7 +75,7 @@ struct Assembled {
   // The blocks of rows that are stored as one record (shaders/solver/stored_rows.glsl).
   std::vector<Block> compact(double masses, double area, bool stiffness) {
     const auto v = get<float>(op.row_sum);
-    const Boundary boundary{.k11 = v[0], .k12 = v[1], .k22 = v[2]};
+    const Boundary boundary = problem.boundary();
     const auto three = [&](std::size_t k) { return glm::dvec3(v[k], v[k + 1], v[k + 2]); };
     std::vector<Block> result;
     constexpr std::size_t head = 3, row = sizeof(gpu::Sp3Row) / sizeof(float);
@@ -233,7 +238,7 @@ TEST_CASE("right-hand sides of the diffuse source on the GPU equal those of the 
       }
       device::write_bytes(gpu_side.device.context, gpu_side.buffers.q, std::as_bytes(std::span(q)));
       record_scale(gpu_side.work, gpu_side.buffers);
-      record_diffuse_load(gpu_side.work, gpu_side.buffers, method, gpu_side.problem.boundary(), gpu_side.op);
+      record_diffuse_load(gpu_side.work, gpu_side.buffers, method, gpu_side.boundaries(), gpu_side.op);
       gpu_side.work.recorder.submit();
       const std::vector<Field> b = gpu_side.fields(gpu_side.op.b);
       const glm::dvec3 scale(gpu_side.get<gpu::Scale>(gpu_side.work.scale)[0].scale);

@@ -5,6 +5,7 @@
 
 #include "engine/base/error.h"
 #include "engine/solve/level_solver.h"
+#include "tests/cpp/fixtures/one_body.h"
 #include "tests/cpp/fixtures/solve_fixtures.h"
 
 using namespace quadgraph;
@@ -164,6 +165,8 @@ TEST_CASE("a matrix that is not positive definite breaks down by name") {
   Operators operators;
   operators.create(context, {&level, 1}, key, true, false);
   OperatorBuffers& op = operators.at(key, 0);
+  OneBody refractions(context, 1);
+  const BodyBoundaries& boundaries = refractions.boundaries(key.method, Source::buried, key.model);
   Workspace work(context, op.count);
   const std::vector<glm::vec3> one(op.entries, glm::vec3(1)), minus(op.entries, glm::vec3(-1));
   std::vector<std::uint32_t> entries = device::download<std::uint32_t>(context, op.entry);
@@ -180,11 +183,13 @@ TEST_CASE("a matrix that is not positive definite breaks down by name") {
     write(op.row_sum, minus);
     device::write_bytes(context, op.entry, std::as_bytes(std::span(entries)));
     write(op.b, one);
+    write(op.surface_share, std::vector<glm::vec3>(op.surface_share.size(), glm::vec3(0)));
     write(op.x, std::vector<glm::vec3>(op.entries, glm::vec3(0)));
     write(op.damping, one);
     device::write_bytes(context, op.state, std::as_bytes(std::span(&state, 1)));
     const char* expected = solver == SolverKind::dpcg ? "not positive definite" : "diverges";
-    LevelSolver level_solver(work, operators, key, 0, {.solver = solver, .max_iterations = 5000});
+    LevelSolver level_solver(work, operators, key, 0,
+                             {.solver = solver, .boundaries = boundaries.on_device.address(), .max_iterations = 5000});
     CHECK_THROWS_WITH_AS(level_solver.run(), doctest::Contains(expected), SolverError);
   }
 }

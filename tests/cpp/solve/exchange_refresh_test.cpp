@@ -5,6 +5,7 @@
 #include "engine/solve/exchange_matrix.h"
 #include "engine/solve/level_upload.h"
 #include "tests/cpp/fixtures/exchange_fixtures.h"
+#include "tests/cpp/fixtures/one_body.h"
 #include "tests/cpp/fixtures/solve_fixtures.h"
 
 using namespace quadgraph;
@@ -16,6 +17,7 @@ struct Cast {
   CheckedContext device;
   OwnedLevel level;
   Level view;
+  OneBody refractions{device.context, 1};
   LevelBuffers buffers;
   Workspace work;
   ExchangeMatrix matrix;
@@ -23,7 +25,7 @@ struct Cast {
   explicit Cast(OwnedLevel owned)
       : level(std::move(owned)),
         view(level.view()),
-        buffers(upload_level(device.context, view, 0)),
+        buffers(upload_level(device.context, view, 0, refractions)),
         work(device.context, buffers.node_count),
         matrix(view) {
     matrix.make_room(device.context);

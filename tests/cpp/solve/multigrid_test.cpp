@@ -8,6 +8,7 @@
 #include "engine/base/error.h"
 #include "engine/solve/assembly.h"
 #include "engine/solve/mesh_error.h"
+#include "tests/cpp/fixtures/one_body.h"
 #include "tests/cpp/fixtures/solve_fixtures.h"
 
 using namespace quadgraph;
@@ -39,6 +40,7 @@ struct Chain {
   Operators operators;
   Workspace work;
   OperatorKey key;
+  OneBody refractions{device.context, 1.3f};
 
   Chain(const std::vector<std::uint32_t>& cells, Model model)
       : graph(QuadGraph::parse(box_graph(cells, 10.0f), "box")),
@@ -53,8 +55,8 @@ struct Chain {
     simulation.solve({.model = model});
     operators.create(device.context, graph.levels(), key, false, true);
     for (std::uint32_t i = 0; i < cells.size(); ++i) {
-      record_assembly(work, simulation.level(i), Method::fem, boundary_of(Method::fem, Source::buried, model, 1.3),
-                      false, operators.at(key, i));
+      record_assembly(work, simulation.level(i), Method::fem,
+                      refractions.boundaries(Method::fem, Source::buried, model), false, operators.at(key, i));
       record_damping(work, Method::fem, operators.at(key, i));
       record_majorant(work, operators.at(key, i));
     }

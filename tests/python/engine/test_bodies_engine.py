@@ -156,7 +156,6 @@ def test_each_body_is_as_rough_as_its_material_says(baked):
 
 REFUSED = {
     "a name": ({"left": WHITE, "rigth": RED}, "rigth"),
-    "one index each": ({"left": WHITE, "right": "sigma_s_prime=1,sigma_a=1,eta=1.5"}, "one index of refraction"),
     "a number": ({"left": WHITE, "right": "sigma_s_prime=-1,sigma_a=1"}, "material of 'right': .*sigma_s_prime"),
     "a map": ({"left": WHITE, "right": "a.npz,map=shell"}, "material of 'right': a map found"),
 }

@@ -41,19 +41,29 @@ class WalkBatch:
 
 
 class MeshWalker:
-    """One body, what is in it, and one light."""
+    """One body, or several apart from each other, what is in it, and one light."""
 
     def __init__(
-        self, surface: Surface, medium: UnseenMedium, light: Light | SmoothSky, patch: np.ndarray, again: bool = True
+        self,
+        surface: Surface,
+        medium: UnseenMedium,
+        light: Light | SmoothSky,
+        patch: np.ndarray,
+        again: bool = True,
+        eta: np.ndarray | None = None,
     ) -> None:
-        """patch (m,): of each triangle; again: whether light outside the body is followed and may enter again."""
-        self._medium, self._light, self._again = medium, light, again
+        """patch (m,): of each triangle; again: whether light outside the body is followed and may enter again.
+
+        eta (m,): index of refraction behind each triangle; None is that of the medium for all.
+        """
+        self._light, self._again = light, again
         self._patch, self._patches = np.asarray(patch, np.int64), int(patch.max()) + 1
         low, high = surface.vertices.min(axis=0), surface.vertices.max(axis=0)
         self._middle = (low + high) / 2
         self._radius = float(np.linalg.norm(surface.vertices - self._middle, axis=1).max())
         self._tree, self._near = walk_surface(surface)
         self._volume = volume_of(medium)
+        self._eta = np.full(len(patch), medium.eta) if eta is None else np.asarray(eta, np.float64)
 
     @cached_property
     def hit_rate(self) -> float:
@@ -77,7 +87,7 @@ class MeshWalker:
         tally = walk_kernel.WalkTally(entered, scattered, again, unscattered, np.zeros(4))
         start = generator.integers(2**64, dtype=np.uint64)
         origins, ways = np.ascontiguousarray(drawn.origins), np.ascontiguousarray(drawn.ways)
-        what = (self._tree, self._near, self._volume, self._medium.eta, self._patch)
+        what = (self._tree, self._near, self._volume, self._eta, self._patch)
         walk_kernel.follow(*what, origins, ways, self._again, start, tally)
         return tally, drawn.power
 

@@ -179,8 +179,8 @@ def _leave(tally, at, weight, scattered, fresh):
 def follow(tree, near, volume, eta, patch, origins, ways, again, seed, tally):
     """Follow light from outside, origins and unit ways (n, 3), each of weight 1, until it is gone.
 
-    patch (f,): of each triangle of the mesh; again: whether what leaves or is reflected outside is followed; tally: is
-    added to.
+    eta, patch (f,): index of refraction behind each triangle of the mesh, inside over outside, and its patch; again:
+    whether what leaves or is reflected outside is followed; tally: is added to.
     """
     state = np.array([seed], np.uint64)
     for walk in range(len(origins)):
@@ -209,7 +209,7 @@ def follow(tree, near, volume, eta, patch, origins, ways, again, seed, tally):
                     dx, dy, dz = _isotropic(state)
                 continue
             met, tally.rest[2] = True, tally.rest[2] + (0 if met else 1)
-            dx, dy, dz, through = _at_face(tree.normal[face], dx, dy, dz, inside, side, eta, state)
+            dx, dy, dz, through = _at_face(tree.normal[face], dx, dy, dz, inside, side, eta[tree.number[face]], state)
             if not through:
                 if inside or again:
                     continue

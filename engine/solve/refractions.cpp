@@ -1,0 +1,101 @@
+#include "engine/solve/refractions.h"
+
+#include <algorithm>
+#include <bit>
+#include <string>
+
+#include "engine/base/error.h"
+#include "engine/optics/fresnel.h"
+#include "engine/reference/operator.h"
+#include "shaders/solver/solve_shared.h"
+
+namespace quadgraph {
+namespace {
+
+gpu::Refraction refraction(float eta, std::uint32_t entering) {
+  const double index = eta;
+  return {.eta = eta,
+          .transmitted = static_cast<float>(diffuse_transmittance(index)),
+          .kept = static_cast<float>(2 * fresnel_moment(1, index)),
+          .radiance_norm = static_cast<float>(radiance_norm(index)),
+          .entering = entering};
+}
+
+gpu::Boundary single_precision(const Boundary& boundary) {
+  return {static_cast<float>(boundary.k11), static_cast<float>(boundary.k12), static_cast<float>(boundary.k22),
+          static_cast<float>(boundary.source), static_cast<float>(boundary.reflected)};
+}
+
+}  // namespace
+
+std::uint32_t BodyBoundaries::bits() const {
+  if (std::ranges::adjacent_find(of_body, std::not_equal_to()) == of_body.end()) return 0;
+  return std::bit_ceil(static_cast<std::uint32_t>(of_body.size())) - 1;
+}
+
+double BodyBoundaries::least_k11() const {
+  return std::ranges::min(of_body, {}, &Boundary::k11).k11;
+}
+
+std::vector<float> different_indices(std::span<const float> eta) {
+  std::vector<float> different;
+  for (const float index : eta) {
+    if (std::ranges::find(different, index) == different.end()) different.push_back(index);
+  }
+  return different;
+}
+
+Refractions::Refractions(device::Device& device, std::uint32_t bodies)
+    : device_(device),
+      eta_(bodies, 1.0f),
+      on_device_(device, bodies * sizeof(gpu::Refraction), device::Place::device, "material/refraction of bodies") {
+  write();
+}
+
+void Refractions::write() {
+  const std::vector<float> different = different_indices(eta_);
+  std::vector<gpu::Refraction> kinds, bodies;
+  for (const float index : different) kinds.push_back(refraction(index, static_cast<std::uint32_t>(kinds.size())));
+  for (const float index : eta_) {
+    bodies.push_back(*std::ranges::find(kinds, index, &gpu::Refraction::eta));
+  }
+  device::write_bytes(device_, on_device_, std::as_bytes(std::span(bodies)));
+  boundaries_.clear();
+}
+
+bool Refractions::set(std::span<const float> eta) {
+  if (eta.size() != 1 && eta.size() != eta_.size()) {
+    throw InputError("eta: " + std::to_string(eta.size()) + " found, one for all, or one for each of " +
+                     std::to_string(eta_.size()) + " bodies wanted");
+  }
+  for (const float index : eta) check_eta(static_cast<double>(index));
+  std::vector<float> wanted(eta.begin(), eta.end());
+  if (wanted.size() == 1) wanted.assign(eta_.size(), eta[0]);
+  if (wanted == eta_) return false;
+  eta_ = std::move(wanted);
+  write();
+  return true;
+}
+
+std::vector<std::uint32_t> Refractions::head(std::uint32_t faces) const {
+  const std::uint64_t address = on_device_.address();
+  return {static_cast<std::uint32_t>(address), static_cast<std::uint32_t>(address >> 32), faces};
+}
+
+const BodyBoundaries& Refractions::boundaries(Method method, Source source, Model model) {
+  const std::tuple key(method, source, model);
+  if (const auto known = boundaries_.find(key); known != boundaries_.end()) return known->second;
+  BodyBoundaries found;
+  std::vector<gpu::Boundary> bodies;
+  for (const float index : eta_) {
+    const auto before = std::ranges::find(eta_, index) - eta_.begin();  // the first body of this index
+    const bool known = static_cast<std::size_t>(before) < found.of_body.size();
+    found.of_body.push_back(known ? found.of_body[static_cast<std::size_t>(before)]
+                                  : boundary_of(method, source, model, double{index}));
+    bodies.push_back(single_precision(found.of_body.back()));
+  }
+  found.on_device = device::upload<gpu::Boundary>(device_, bodies, "operator/boundaries of bodies");
+  return boundaries_.emplace(key, std::move(found)).first->second;
+}
+
+}  // namespace quadgraph

@@ -1,0 +1,60 @@
+// The smooth surface of each body of a file, by its index of refraction, as passes read it.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <tuple>
+#include <vector>
+
+#include "engine/device/memory.h"
+#include "engine/optics/boundary.h"
+#include "shaders/shared/refraction.h"
+
+namespace quadgraph {
+
+// What the surfaces do to the fields inside, by body: for the host, and gpu::Boundary on the device.
+struct BodyBoundaries {
+  std::vector<Boundary> of_body;
+  device::Buffer on_device;
+
+  // Sp3Head::bodies: the bits that tell the bodies apart; 0 where all have one boundary.
+  std::uint32_t bits() const;
+  // The least k11 of any body.
+  double least_k11() const;
+};
+
+class Refractions {
+ public:
+  // `bodies`, at least 1: of the file; all of index 1 at first.
+  Refractions(device::Device& device, std::uint32_t bodies);
+  Refractions(const Refractions&) = delete;
+  Refractions& operator=(const Refractions&) = delete;
+
+  // One index for all bodies, or one for each; false: as it was. Throws InputError on another number of them, and as
+  // check_eta; then all stays as it was.
+  bool set(std::span<const float> eta);
+
+  std::span<const float> eta() const { return eta_; }  // by body
+  // gpu::Refraction by body; where it lies does not change.
+  const device::Buffer& on_device() const { return on_device_; }
+  // The words before the kinds of faces (shaders/shared/refraction.h).
+  std::vector<std::uint32_t> head(std::uint32_t faces) const;
+
+  // boundary_of by body, found at first use; valid until the indices change.
+  const BodyBoundaries& boundaries(Method method, Source source, Model model);
+
+ private:
+  void write();
+
+  device::Device& device_;
+  std::vector<float> eta_;
+  device::Buffer on_device_;
+  std::map<std::tuple<Method, Source, Model>, BodyBoundaries> boundaries_;
+};
+
+// The different ones among indices, each once, in the order in which they come first: the pictures of what enters of an
+// environment are in this order (gpu::Refraction::entering).
+std::vector<float> different_indices(std::span<const float> eta);
+
+}  // namespace quadgraph

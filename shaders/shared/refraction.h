@@ -1,0 +1,56 @@
+// What the smooth surfaces of bodies do to light, and which outside face is of which body; shared with C++, see shared.h.
+#ifndef QUADGRAPH_REFRACTION_H
+#define QUADGRAPH_REFRACTION_H
+
+#include "shared/shared.h"
+
+#ifdef __cplusplus
+namespace quadgraph::gpu {
+#endif
+
+// Of a body by its index of refraction.
+struct Refraction {
+  float eta;            // inside over outside, 1 to 3
+  float transmitted;    // share of uniform illumination from outside that enters
+  float kept;           // share of diffuse light inside that the surface reflects back
+  float radiance_norm;  // integral of F_t cos over the hemisphere, sr
+  uint entering;        // picture of environments that enters (ENVIRONMENT_ENTERING)
+};
+
+// Kinds of the outside faces of a level: the address of a Refraction for each body in two words, low and high, the count
+// of the faces; then for each of these whether light passes it (engine/file/graph.h), and from bit FACE_BODY on the
+// number of its body.
+const uint FACE_HEAD = 3u;
+const uint FACE_OPEN = 0u;
+const uint FACE_REFLECTING = 1u;
+const uint FACE_BODY = 1u;
+
+#ifndef __cplusplus
+QG_ARRAY(Refractions, Refraction);
+
+uint faces_in(Uints kinds) {
+  return kinds.at[2];
+}
+
+bool is_open(Uints kinds, uint face) {
+  return (kinds.at[FACE_HEAD + face] & FACE_REFLECTING) == FACE_OPEN;
+}
+
+// The number of the body behind a face.
+uint body_behind(Uints kinds, uint face) {
+  return kinds.at[FACE_HEAD + face] >> FACE_BODY;
+}
+
+Refraction refraction_behind(Uints kinds, uint face) {
+  return Refractions(uvec2(kinds.at[0], kinds.at[1])).at[body_behind(kinds, face)];
+}
+
+float eta_behind(Uints kinds, uint face) {
+  return Refractions(uvec2(kinds.at[0], kinds.at[1])).at[body_behind(kinds, face)].eta;
+}
+#endif
+
+#ifdef __cplusplus
+}  // namespace quadgraph::gpu
+#endif
+#endif
