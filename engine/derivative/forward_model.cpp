@@ -74,7 +74,7 @@ struct ForwardModel::State {
         problem{Method::fem, Source::buried, asked.model, {}, asked.eta},
         outgoing(of.faces.size(), samples.size()) {
     check();
-    rows = assemble_elements(level, elements_of(at), options.model, boundary());
+    rows = assemble_elements(level, elements_of(at), options.model, problem.boundaries());
     if (sees_itself()) again.emplace(level, problem, at);
     solve();
   }
@@ -117,7 +117,7 @@ struct ForwardModel::State {
     check_size("power", parameters.power.size(), lights.size());
   }
 
-  Boundary boundary() const { return problem.boundary(); }
+  Boundary boundary() const { return problem.boundaries().of(0); }
   bool sees_itself() const { return options.bounces && level.seen.size() > level.faces.size() + 1; }
   double entering() const { return diffuse_transmittance(options.eta); }
   Entering entering_light() const { return {lights, again_q, options.check}; }
@@ -288,7 +288,7 @@ Outgoing ForwardModel::tangent(const Parameters& along) const {
   State& s = *state_;
   s.check_sizes(along);
   const Walked own = s.walked_rays().tangent(s.level, along);
-  const Rows change = assemble_elements(s.level, elements_along(s.at, along), s.options.model, Boundary{});
+  const Rows change = assemble_elements(s.level, elements_along(s.at, along), s.options.model, {{Boundary{}}});
   const std::vector<Field> moved = quadgraph::apply(change, s.x);
   Walked all = own;
   std::vector<Field> change_of_x;

@@ -53,7 +53,7 @@ void gather_all(const Inside& inside, const Numbers& numbers, const Fields& fiel
                 const Take& take) {
   ViewRay ray(inside.level, inside.problem, numbers, fields, {}, {differentiable_end, differentiable_end});
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    const Inward inward = inward_of(inside.level, inside.problem.eta, samples[i].face, samples[i].outside);
+    const Inward inward = inward_of(inside.level, inside.problem.eta.of(0), samples[i].face, samples[i].outside);
     auto radiance = ray.run(samples[i].face, samples[i].barycentric, inward.direction);
     for (auto& channel : radiance) channel = channel * inward.leaves;
     take(i, radiance);

@@ -56,21 +56,23 @@ class Beam {
     if (value_of(power[0]) == 0 && value_of(power[1]) == 0 && value_of(power[2]) == 0) return;
     for (int c = 0; c < 3; ++c) sink_.entered(c, power[static_cast<std::size_t>(c)]);
     if (beam_.kind == gpu::BEAM_LAMBERTIAN) return lambertian(f, frame, barycentric, power);
-    if (beam_.kind == gpu::BEAM_MEAN) return ray_.run(f, barycentric, mean_direction(frame, f, problem_.eta), power);
+    const double eta = problem_.eta.behind(level_, f);
+    if (beam_.kind == gpu::BEAM_MEAN) return ray_.run(f, barycentric, mean_direction(frame, f, eta), power);
     const glm::dvec3 outside = incoming(f, frame, quarter, point_at(frame, barycentric));
-    ray_.run(f, barycentric, refract(outside, frame.normal, problem_.eta), power);
+    ray_.run(f, barycentric, refract(outside, frame.normal, eta), power);
   }
 
   glm::dvec3 incoming(std::uint32_t f, const FaceFrame& frame, std::uint32_t quarter, const glm::dvec3& point) const {
     const glm::dvec3 vector(beam_.travel_or_from);
     if (beam_.kind == gpu::BEAM_DIRECTIONAL) return vector;
     if (beam_.kind == gpu::BEAM_POINT) return glm::normalize(point - vector);
-    return rectangle_incoming(beam_, frame, f, quarter, point, problem_.eta);
+    return rectangle_incoming(beam_, frame, f, quarter, point, problem_.eta.behind(level_, f));
   }
 
   void lambertian(std::uint32_t f, const FaceFrame& frame, const glm::dvec3& barycentric, const Power& power) {
-    const LambertianBundle bundle = lambertian_bundle(problem_.eta);
-    const auto directions = lambertian_directions(frame, f, problem_.eta);
+    const double eta = problem_.eta.behind(level_, f);
+    const LambertianBundle bundle = lambertian_bundle(eta);
+    const auto directions = lambertian_directions(frame, f, eta);
     for (std::size_t i = 0; i < directions.size(); ++i) {
       const double share = 0.5 * bundle.share[i / 2];
       ray_.run(f, barycentric, directions[i], {power[0] * share, power[1] * share, power[2] * share});

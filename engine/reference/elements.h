@@ -24,7 +24,7 @@ void add_element_product(const Level& level, const glm::uvec4& tet, const Elemen
 
 // Rows of `fem` (operator.h), of one entry per tet.
 Rows assemble_elements(const Level& level, std::span<const ElementCoefficients> elements, Model model,
-                       const Boundary& boundary);
+                       const Boundaries& boundaries);
 
 // Per tet what the coefficients are multiplied by in left^T A right.
 std::vector<ElementCoefficients> element_products(const Level& level, std::span<const Field> left,

@@ -50,12 +50,13 @@ glm::dvec3 brought(std::span<const EvenFace> faces, std::span<const std::uint32_
 
 void make_even(const Level& level, const Problem& problem, std::span<const glm::dvec3> q,
                std::vector<glm::dvec3>& exitance) {
-  const auto kept = static_cast<float>(2 * fresnel_moment(1, problem.eta));
+  OfBodies<float> kept;
+  for (const double eta : problem.eta.values) kept.values.push_back(static_cast<float>(2 * fresnel_moment(1, eta)));
   std::vector<EvenFace> faces(level.face_count());
   std::vector<std::vector<std::uint32_t>> around(level.vertices.size());
   for (std::uint32_t f = 0; f < level.face_count(); ++f) {
     if (level.reflecting(f)) continue;
-    faces[f] = even_face(level, problem.optical[level.face_tets[f]], kept, f, q[f], exitance[f]);
+    faces[f] = even_face(level, problem.optical[level.face_tets[f]], kept.behind(level, f), f, q[f], exitance[f]);
     for (int k = 0; k < 3; ++k) around[level.faces[f][k]].push_back(f);
   }
   for (std::uint32_t f = 0; f < level.face_count(); ++f) {

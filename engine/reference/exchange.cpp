@@ -22,8 +22,9 @@ bool sees_itself(const Level& level) {
 // Light and what of it comes again, bounce by bounce.
 class Bounces {
  public:
-  Bounces(const Level& level, double eta, std::span<const EnteringLight> lights, BouncedSolution& result)
-      : level_(level), entering_(diffuse_transmittance(eta)), lights_(lights.begin(), lights.end()), result_(result) {
+  Bounces(const Level& level, const Indices& eta, std::span<const EnteringLight> lights, BouncedSolution& result)
+      : level_(level), lights_(lights.begin(), lights.end()), result_(result) {
+    for (const double index : eta.values) entering_.values.push_back(diffuse_transmittance(index));
     for (const EnteringLight& light : lights) {
       for (std::uint32_t f = 0; f < level.face_count(); ++f) {
         if (!level.reflecting(f)) entered_ += face_area(level, level.faces[f]) * glm::dvec3(light.q[f]);
@@ -39,14 +40,17 @@ class Bounces {
   // One more bounce of the light in `result`; true if it changed less than `share` of what entered, in every channel.
   bool advance(double share) {
     std::vector<glm::dvec3> radiosity = result_.solution.flux;
-    for (std::size_t f = 0; f < radiosity.size(); ++f) radiosity[f] += (1.0 - entering_) * result_.irradiance[f];
+    for (std::uint32_t f = 0; f < level_.face_count(); ++f) {
+      radiosity[f] += (1.0 - entering_.behind(level_, f)) * result_.irradiance[f];
+    }
     const std::vector<glm::dvec3> before = std::exchange(result_.irradiance, received_irradiance(level_, radiosity));
     glm::dvec3 brought{0}, changed{0};
     for (std::uint32_t f = 0; f < level_.face_count(); ++f) {
-      const glm::dvec3 step = entering_ * (result_.irradiance[f] - before[f]);
+      const double entering = entering_.behind(level_, f);
+      const glm::dvec3 step = entering * (result_.irradiance[f] - before[f]);
       brought += face_area(level_, level_.faces[f]) * step;
       changed += face_area(level_, level_.faces[f]) * glm::abs(step);
-      result_.re_entered[f] = entering_ * result_.irradiance[f];
+      result_.re_entered[f] = entering * result_.irradiance[f];
     }
     result_.bounces.push_back(brought);
     return glm::all(glm::lessThanEqual(changed, share * entered_));
@@ -54,7 +58,7 @@ class Bounces {
 
  private:
   const Level& level_;
-  double entering_;
+  OfBodies<double> entering_;
   std::vector<EnteringLight> lights_;
   glm::dvec3 entered_{0};
   BouncedSolution& result_;
@@ -69,7 +73,7 @@ std::vector<double> sky_visibility(const Level& level) {
   return sky;
 }
 
-BouncedSolution solve_with_bounces(const Level& level, std::span<const gpu::Optical> optical, double eta,
+BouncedSolution solve_with_bounces(const Level& level, std::span<const gpu::Optical> optical, const Indices& eta,
                                    std::span<const EnteringLight> lights, const SolveOptions& options,
                                    Entries entries) {
   BouncedSolution result;

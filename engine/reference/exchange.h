@@ -33,7 +33,7 @@ inline constexpr std::uint32_t max_bounces = 64;
 // more than a tenth of options.tolerance of what entered in every channel, or max_bounces are done; with
 // options.bounces > 0 so many bounces from none. Each takes M of the solve and E of the bounce before. None where
 // bounces_wanted is false or the level sees nothing of itself.
-BouncedSolution solve_with_bounces(const Level& level, std::span<const gpu::Optical> optical, double eta,
+BouncedSolution solve_with_bounces(const Level& level, std::span<const gpu::Optical> optical, const Indices& eta,
                                    std::span<const EnteringLight> lights, const SolveOptions& options,
                                    Entries entries = Entries::exact);
 

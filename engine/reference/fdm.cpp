@@ -51,7 +51,7 @@ void assemble_surface(const Level& level, const Problem& problem, const Boundary
 }  // namespace
 
 Rows assemble_fdm(const Level& level, const Problem& problem) {
-  const Boundary boundary = problem.boundary();
+  const Boundaries boundaries = problem.boundaries();
   Rows rows;
   rows.diagonal.resize(level.nodes.size());
   rows.offset.push_back(0);
@@ -60,7 +60,7 @@ Rows assemble_fdm(const Level& level, const Problem& problem) {
     rows.offset.push_back(static_cast<std::uint32_t>(rows.column.size()));
   }
   for (std::uint32_t f = 0; f < level.face_count(); ++f) {
-    assemble_surface(level, problem, boundary, f, rows);
+    assemble_surface(level, problem, boundaries.behind(level, f), f, rows);
     rows.offset.push_back(static_cast<std::uint32_t>(rows.column.size()));
   }
   for (const gpu::Optical& o : problem.optical) rows.to_phi.push_back(1.0 / glm::dvec3(gpu::kappa(o)));

@@ -91,7 +91,7 @@ void add_face(const Level& level, const glm::uvec3& face, Model model, const Bou
 }  // namespace
 
 Rows assemble_elements(const Level& level, std::span<const ElementCoefficients> elements, Model model,
-                       const Boundary& boundary) {
+                       const Boundaries& boundaries) {
   Rows rows;
   build_pattern(level, rows);
   rows.weight.assign(rows.column.size(), Block{});
@@ -101,7 +101,7 @@ Rows assemble_elements(const Level& level, std::span<const ElementCoefficients> 
     add_tet(tet_geometry(level, level.tets[t]), level.tets[t], elements[t], model, rows);
   }
   for (std::uint32_t f = 0; f < level.face_count(); ++f) {
-    if (!level.reflecting(f)) add_face(level, level.faces[f], model, boundary, rows);
+    if (!level.reflecting(f)) add_face(level, level.faces[f], model, boundaries.behind(level, f), rows);
   }
   return rows;
 }
@@ -125,7 +125,7 @@ void add_element_product(const Level& level, const glm::uvec4& tet, const Elemen
 Rows assemble_fem(const Level& level, const Problem& problem) {
   std::vector<ElementCoefficients> elements;
   for (std::uint32_t t = 0; t < level.tet_count(); ++t) elements.push_back(element_of(problem.optical[t]));
-  return assemble_elements(level, elements, problem.model, problem.boundary());
+  return assemble_elements(level, elements, problem.model, problem.boundaries());
 }
 
 std::vector<ElementCoefficients> element_products(const Level& level, std::span<const Field> left,

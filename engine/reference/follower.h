@@ -62,12 +62,13 @@ class Follower {
 
   template <class Lit>
   Light at(std::uint32_t v, const gpu::BeamRecord& beam, const Lit& lit) const {
-    const auto [mu, share] = lambertian_bundle(problem_.eta);
+    const double eta = problem_.eta.of(level_.body_of_tet(shape_.starts.start[v]));
+    const auto [mu, share] = lambertian_bundle(eta);
     switch (beam.kind) {
       case gpu::BEAM_LAMBERTIAN:
         return even(v, lit, mu, share);
       case gpu::BEAM_MEAN:
-        return even(v, lit, std::array{lambertian_bundle(problem_.eta).mean_cosine()}, std::array{1.0});
+        return even(v, lit, std::array{lambertian_bundle(eta).mean_cosine()}, std::array{1.0});
       default:
         return directed(v, beam, lit);
     }
@@ -113,8 +114,8 @@ class Follower {
   }
 
   // Inside cosine of light that meets the surface from outside at cosine c.
-  double entering(double c) const {
-    return std::max(refracted_cosine(std::max(c, 0.0), problem_.eta), static_cast<double>(gpu::LEAST_COSINE));
+  static double entering(double c, double eta) {
+    return std::max(refracted_cosine(std::max(c, 0.0), eta), static_cast<double>(gpu::LEAST_COSINE));
   }
 
   template <class Lit>
@@ -123,12 +124,13 @@ class Follower {
     const glm::dvec3 omega =
         beam.kind == gpu::BEAM_DIRECTIONAL ? vector : glm::normalize(glm::dvec3(level_.vertices[v]) - vector);
     if (const auto at_surface = on_lit_surface(v, omega, lit)) return *at_surface;
+    const double eta = problem_.eta.of(level_.body_of_tet(shape_.starts.start[v]));
     std::optional<Arrival> arrival = arrive(v, -omega);
-    if (arrival && problem_.eta > 1) arrival = arrive(v, -refract(omega, arrival->normal, problem_.eta));
+    if (arrival && eta > 1) arrival = arrive(v, -refract(omega, arrival->normal, eta));
     if (!arrival) return {};
     const double c = -glm::dot(omega, arrival->normal);
     Light light;
-    light.entry = scaled(lit.at(arrival->face, arrival->quarter), 1 / entering(c));
+    light.entry = scaled(lit.at(arrival->face, arrival->quarter), 1 / entering(c, eta));
     light.depth = arrival->depth;
     return light;
   }
@@ -160,9 +162,10 @@ class Follower {
   // At a vertex of faces that the light falls on: the mean over them.
   template <class Lit>
   std::optional<Light> on_lit_surface(std::uint32_t v, const glm::dvec3& omega, const Lit& lit) const {
+    const double eta = problem_.eta.of(level_.body_of_tet(shape_.starts.start[v]));
     return mean_at(v, lit, [&](const FaceFrame& frame) {
       const double c = -glm::dot(omega, frame.normal);
-      return c <= 0 ? std::array{0.0, 0.0} : std::array{frame.area, 1 / entering(c)};
+      return c <= 0 ? std::array{0.0, 0.0} : std::array{frame.area, 1 / entering(c, eta)};
     });
   }
 

@@ -49,7 +49,8 @@ int face_towards(const Level& level, std::uint32_t t, std::uint32_t node) {
 }  // namespace
 
 Rows assemble_fv(const Level& level, const Problem& problem) {
-  const Boundary boundary = problem.boundary();
+  const Boundary none;
+  const Boundaries boundaries = problem.boundaries();
   Rows rows;
   rows.offset.push_back(0);
   rows.to_phi.assign(level.nodes.size(), glm::dvec3(1));
@@ -62,20 +63,20 @@ Rows assemble_fv(const Level& level, const Problem& problem) {
     for (int k : order) {
       const glm::dvec3 g = conductance(level, problem.optical, t, k);
       rows.column.push_back(level.links[t][k]);
-      rows.weight.push_back(block_of({.stiffness = -g}, problem.model, boundary));
+      rows.weight.push_back(block_of({.stiffness = -g}, problem.model, none));
       own.stiffness += g;
     }
-    rows.diagonal.push_back(block_of(own, problem.model, boundary));
+    rows.diagonal.push_back(block_of(own, problem.model, none));
     rows.offset.push_back(static_cast<std::uint32_t>(rows.column.size()));
   }
   for (std::uint32_t f = 0; f < level.face_count(); ++f) {
     const std::uint32_t t = level.face_tets[f];
     const glm::dvec3 g = conductance(level, problem.optical, t, face_towards(level, t, level.tet_count() + f));
     rows.column.push_back(t);
-    rows.weight.push_back(block_of({.stiffness = -g}, problem.model, boundary));
+    rows.weight.push_back(block_of({.stiffness = -g}, problem.model, none));
     Terms own{.stiffness = g};
     if (!level.reflecting(f)) own.boundary = glm::dvec3(face_area(level, level.faces[f]));
-    rows.diagonal.push_back(block_of(own, problem.model, boundary));
+    rows.diagonal.push_back(block_of(own, problem.model, boundaries.behind(level, f)));
     rows.offset.push_back(static_cast<std::uint32_t>(rows.column.size()));
   }
   return rows;

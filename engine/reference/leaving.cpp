@@ -70,24 +70,24 @@ std::optional<Branch> brightest_that_meets(const Level& level, std::vector<Escap
 }  // namespace
 
 LeavingLight leaving(const Level& level, const Problem& problem, const InsideLight& light,
-                     std::span<const VertexScale> scale, double radiance_norm, std::uint32_t f, glm::dvec3 barycentric,
-                     glm::dvec3 outside) {
+                     std::span<const VertexScale> scale, std::uint32_t f, glm::dvec3 barycentric, glm::dvec3 outside) {
   LeavingLight sum;
   glm::dvec3 share(1);
   std::vector<Escape> waiting;
   for (std::uint32_t part = 0; part < gpu::VIEW_PARTS; ++part) {
     const glm::dvec3 normal =
         part == 0 || light.normals.empty() ? frame_of(level, f).normal : normal_at(light.normals[f], barycentric);
-    share *= fresnel_transmittance(std::clamp(glm::dot(outside, normal), 0.0, 1.0), problem.eta);
-    const Gathered inside = gather(level, problem, light, f, barycentric, refract(-outside, normal, problem.eta));
+    const double eta = problem.eta.behind(level, f), norm = radiance_norm(eta);
+    share *= fresnel_transmittance(std::clamp(glm::dot(outside, normal), 0.0, 1.0), eta);
+    const Gathered inside = gather(level, problem, light, f, barycentric, refract(-outside, normal, eta));
     glm::dvec3 factor(0), rest(0), least(0);
     for (int k = 0; k < 3; ++k) {
       factor += barycentric[k] * scale[level.faces[f][k]].factor;
       rest += barycentric[k] * scale[level.faces[f][k]].rest;
       least += barycentric[k] * scale[level.faces[f][k]].least;
     }
-    const glm::dvec3 radiance = factor * inside.radiance / (problem.eta * problem.eta) + rest / radiance_norm;
-    sum.radiance += share * glm::max(radiance, least / radiance_norm);
+    const glm::dvec3 radiance = factor * inside.radiance / (eta * eta) + rest / norm;
+    sum.radiance += share * glm::max(radiance, least / norm);
     for (Escape escape : inside.escapes) {
       escape.share *= share;
       waiting.push_back(escape);

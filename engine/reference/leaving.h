@@ -17,9 +17,7 @@ struct LeavingLight {
 
 // From the point `barycentric` of open face f along `outside` (unit, away from the face): gathered radiance, scaled,
 // and what the ray gathers in the parts of the body that lie behind, where more than GATHER_END of it comes out again.
-// `radiance_norm`: integral of F_t cos over the hemisphere, sr.
 LeavingLight leaving(const Level& level, const Problem& problem, const InsideLight& light,
-                     std::span<const VertexScale> scale, double radiance_norm, std::uint32_t f, glm::dvec3 barycentric,
-                     glm::dvec3 outside);
+                     std::span<const VertexScale> scale, std::uint32_t f, glm::dvec3 barycentric, glm::dvec3 outside);
 
 }  // namespace quadgraph

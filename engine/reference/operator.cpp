@@ -22,7 +22,13 @@ bool in_range(const gpu::Optical& optical) {
 
 void check_problem(const Level& level, const Problem& problem) {
   check_optical(problem.optical, level.nodes.size());
-  check_eta(problem.eta);
+  for (const double eta : problem.eta.values) check_eta(eta);
+  const auto last = std::ranges::max_element(level.tet_bodies);
+  const std::size_t bodies = last == level.tet_bodies.end() ? 1 : std::size_t{*last} + 1;
+  if (problem.eta.values.size() != 1 && problem.eta.values.size() != bodies) {
+    throw InputError("eta: " + std::to_string(problem.eta.values.size()) + " found, one for all, or one for each of " +
+                     std::to_string(bodies) + " bodies wanted");
+  }
   if (problem.model == Model::automatic) throw InputError("model 'auto': resolve it before assembling");
   check_method(level, problem.method);
 }
@@ -93,6 +99,24 @@ glm::dvec3 relaxation_of(const gpu::Optical& optical) {
   return 5.0 / 9.0 * glm::dvec3(gpu::sigma_t(optical));
 }
 
+Boundaries Problem::boundaries() const {
+  Boundaries found;
+  for (const double index : eta.values) found.values.push_back(boundary_of(method, source, model, index));
+  return found;
+}
+
+std::vector<std::uint32_t> carrier_bodies(const Level& level, Method method) {
+  std::vector<std::uint32_t> body(carrier_count(level, method));
+  for (std::uint32_t t = 0; t < level.tet_count(); ++t) {
+    if (!on_vertices(method)) body[t] = level.body_of_tet(t);
+    for (int k = 0; on_vertices(method) && k < 4; ++k) body[level.tets[t][k]] = level.body_of_tet(t);
+  }
+  for (std::uint32_t f = 0; f < level.face_count() && !on_vertices(method); ++f) {
+    body[level.tet_count() + f] = level.body_of_face(f);
+  }
+  return body;
+}
+
 std::uint32_t carrier_count(const Level& level, Method method) {
   return on_vertices(method) ? level.vertex_count() : level.node_count();
 }
@@ -117,9 +141,11 @@ Rows assemble(const Level& level, const Problem& problem) {
 std::vector<Field> diffuse_load(const Level& level, const Problem& problem, std::span<const glm::vec3> q) {
   check_problem(level, problem);
   check_irradiance(level, q);
-  const Boundary boundary = problem.boundary();
+  const Boundaries boundaries = problem.boundaries();
+  const std::vector<std::uint32_t> body = carrier_bodies(level, problem.method);
   std::vector<Field> b;
   for (const glm::dvec3& load : surface_load(level, problem, q)) {
+    const Boundary& boundary = boundaries.of(body[b.size()]);
     b.push_back({boundary.k11 * boundary.source * load, boundary.k12 * boundary.source * load});
   }
   return b;

@@ -47,6 +47,7 @@
 #include "engine/base/solve_options.h"
 #include "engine/file/graph.h"
 #include "engine/reference/block.h"
+#include "engine/reference/indices.h"
 #include "shaders/shared/shared.h"
 
 namespace quadgraph {
@@ -57,9 +58,9 @@ struct Problem {
   Source source = Source::buried;
   Model model = Model::diffusion;
   std::span<const gpu::Optical> optical;  // one per node of the level (inner, then surface)
-  double eta = 1;
+  Indices eta = 1;
 
-  Boundary boundary() const { return boundary_of(method, source, model, eta); }
+  Boundaries boundaries() const;
 };
 
 // Compressed rows without the diagonal. (A x)_i = diagonal_i x_i + sum_k weight_k x_column_k, per channel.
@@ -72,6 +73,9 @@ struct Rows {
 
   std::size_t size() const { return diagonal.size(); }
 };
+
+// The body of each carrier of a method on a level.
+std::vector<std::uint32_t> carrier_bodies(const Level& level, Method method);
 
 // Carriers of a method on a level: rows of its operator, each with one unknown (diffusion) or two (sp3).
 std::uint32_t carrier_count(const Level& level, Method method);

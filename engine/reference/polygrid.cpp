@@ -45,7 +45,7 @@ class GridAssembly {
       : level_(level),
         problem_(problem),
         published_(problem.method == Method::polygrid),
-        boundary_(problem.boundary()),
+        boundary_(problem.boundaries().of(0)),
         material_(grid_material(level, problem.optical)),
         open_area_(surface_load_fem(level, std::vector<glm::vec3>(level.faces.size(), glm::vec3(1)))),
         neighbour_(grid_neighbours(level)) {

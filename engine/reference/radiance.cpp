@@ -46,7 +46,7 @@ Inward inward_of(const Level& level, double eta, std::uint32_t f, const glm::dve
 
 glm::dvec3 gathered_radiance(const Level& level, const Problem& problem, const InsideLight& light, std::uint32_t f,
                              const glm::dvec3& barycentric, const glm::dvec3& outside) {
-  const Inward inward = inward_of(level, problem.eta, f, outside);
+  const Inward inward = inward_of(level, problem.eta.behind(level, f), f, outside);
   return inward.leaves * gather(level, problem, light, f, barycentric, inward.direction).radiance;
 }
 
@@ -54,12 +54,12 @@ std::vector<glm::dvec3> gathered_exitance(const Level& level, const Problem& pro
   std::vector<glm::dvec3> exitance(level.faces.size(), glm::dvec3(0));
   for (std::uint32_t f = 0; f < level.face_count(); ++f) {
     if (level.reflecting(f)) continue;
-    const auto directions = lambertian_directions(frame_of(level, f), f, problem.eta);
+    const double eta = problem.eta.behind(level, f);
+    const auto directions = lambertian_directions(frame_of(level, f), f, eta);
     for (std::size_t k = 0; k < gpu::LAMBERTIAN_NODES; ++k) {
-      const double leaves = fresnel_transmittance(std::sqrt(static_cast<double>(gpu::LAMBERTIAN_U[k])), problem.eta);
+      const double leaves = fresnel_transmittance(std::sqrt(static_cast<double>(gpu::LAMBERTIAN_U[k])), eta);
       const glm::dvec3& direction = directions[2 * k + k / 2];
-      exitance[f] += glm::pi<double>() * static_cast<double>(gpu::LAMBERTIAN_W[k]) * leaves /
-                     (problem.eta * problem.eta) *
+      exitance[f] += glm::pi<double>() * static_cast<double>(gpu::LAMBERTIAN_W[k]) * leaves / (eta * eta) *
                      gather(level, problem, light, f, glm::dvec3(1.0 / 3), direction).radiance;
     }
   }

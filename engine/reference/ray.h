@@ -106,7 +106,7 @@ class Ray {
     const glm::dvec3 normal = way_.face_normal();
     if (!level_.reflecting(f)) {
       const double mu = std::clamp(glm::dot(direction_, normal), 0.0, 1.0);
-      const double inside = internal_reflectance(mu, problem_.eta);
+      const double inside = internal_reflectance(mu, problem_.eta.behind(level_, f));
       for (int c = 0; c < 3; ++c) {
         Real& power = power_[static_cast<std::size_t>(c)];
         const Real out = (1.0 - inside) * power;

@@ -38,9 +38,11 @@ std::vector<glm::dvec3> from_outside(std::span<const EnteringLight> lights, std:
 
 void add_surface(const Level& level, const Problem& problem, std::span<const EnteringLight> lights,
                  ReferenceSolution& solution) {
-  const Boundary boundary = problem.boundary();
+  const Boundaries boundaries = problem.boundaries();
+  const std::vector<std::uint32_t> body = carrier_bodies(level, problem.method);
   std::vector<glm::dvec3> flux;
   for (std::size_t i = 0; i < solution.phi.size(); ++i) {
+    const Boundary& boundary = boundaries.of(body[i]);
     flux.push_back(boundary.k11 * solution.phi[i] + boundary.k12 * solution.phi2[i]);
   }
   solution.phi_face = over_faces<glm::dvec3>(level, problem.method, solution.phi);
@@ -50,7 +52,8 @@ void add_surface(const Level& level, const Problem& problem, std::span<const Ent
     solution.flux = over_faces<glm::dvec3>(level, problem.method, flux);
     for (std::uint32_t f = 0; f < level.face_count(); ++f) {
       if (level.reflecting(f)) continue;
-      for (const EnteringLight& light : lights) solution.flux[f] -= boundary.reflected * glm::dvec3(light.q[f]);
+      const double reflected = boundaries.behind(level, f).reflected;
+      for (const EnteringLight& light : lights) solution.flux[f] -= reflected * glm::dvec3(light.q[f]);
     }
   }
   solution.energy.scattered_out = surface_integral<glm::dvec3>(level, solution.flux);
@@ -123,7 +126,7 @@ std::vector<gpu::Optical> evaluate_material(const Level& level, const gpu::Mater
   return optical;
 }
 
-ReferenceSolution solve_reference(const Level& level, std::span<const gpu::Optical> optical, double eta,
+ReferenceSolution solve_reference(const Level& level, std::span<const gpu::Optical> optical, const Indices& eta,
                                   std::span<const EnteringLight> lights, const SolveOptions& options, Entries entries) {
   const Problem problem{options.method, options.source, options.model, optical, eta};
   Rows rows = assemble(level, problem);

@@ -50,11 +50,11 @@ constexpr SolveOptions reference_options() {
 // together; unsymmetric methods are always relaxed. `options.model` must not be `automatic`; bounces are those of
 // exchange.h, not of this. Throws InputError as `assemble` does, SolverError if conjugate gradients meet a direction of
 // non-positive energy or the residual is no longer finite.
-ReferenceSolution solve_reference(const Level& level, std::span<const gpu::Optical> optical, double eta,
+ReferenceSolution solve_reference(const Level& level, std::span<const gpu::Optical> optical, const Indices& eta,
                                   std::span<const EnteringLight> lights, const SolveOptions& options,
                                   Entries entries = Entries::exact);
 
-inline ReferenceSolution solve_reference(const Level& level, std::span<const gpu::Optical> optical, double eta,
+inline ReferenceSolution solve_reference(const Level& level, std::span<const gpu::Optical> optical, const Indices& eta,
                                          const EnteringLight& light, const SolveOptions& options,
                                          Entries entries = Entries::exact) {
   return solve_reference(level, optical, eta, std::span(&light, 1), options, entries);

@@ -150,12 +150,12 @@ class ViewRay {
     if (level_.reflecting(f)) return mirrored(direction, flat);
     const glm::dvec3 normal = normals_.empty() ? flat : smooth_normal(f);
     const double cosine = std::clamp(glm::dot(direction, normal), 0.0, 1.0);
-    const double kept = internal_reflectance(cosine, problem_.eta);
+    const double eta = problem_.eta.behind(level_, f), kept = internal_reflectance(cosine, eta);
     if (kept < 1) {
       glm::dvec3 point(0);
       for (std::size_t k = 0; k < 4; ++k) point += ray_.corner(k).lambda * ray_.corner(k).position;
-      const double outside = std::sqrt(std::max(1 - problem_.eta * problem_.eta * (1 - cosine * cosine), 0.0));
-      const glm::dvec3 way = glm::normalize(problem_.eta * (direction - cosine * normal) + outside * normal);
+      const double outside = std::sqrt(std::max(1 - eta * eta * (1 - cosine * cosine), 0.0));
+      const glm::dvec3 way = glm::normalize(eta * (direction - cosine * normal) + outside * normal);
       const glm::dvec3 left(value_of(left_[0]), value_of(left_[1]), value_of(left_[2]));
       escapes_.push_back({(1 - kept) * left, f, point, outward_of(flat, way)});
     }

@@ -58,7 +58,8 @@ CorrectedPatches Simulation::Implementation::measure_patches(const BodyBoundarie
 void Simulation::Implementation::forget_other_material() {
   if (!optical_changed) return;
   std::vector<gpu::Optical> now = optical_at(0);
-  const bool another = std::max(extinction_change(corrected_optical, now), index_change(corrected_eta, refractions.eta())) > most_carried;
+  const bool another = std::max(extinction_change(corrected_optical, now),
+                                index_change(corrected_eta, refractions.eta())) > most_carried;
   another ? correction->forget() : correction->edited();
   corrected_optical = std::move(now);
   corrected_eta.assign(refractions.eta().begin(), refractions.eta().end());

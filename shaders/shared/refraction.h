@@ -1,4 +1,5 @@
-// What the smooth surfaces of bodies do to light, and which outside face is of which body; shared with C++, see shared.h.
+// What the smooth surfaces of bodies do to light, and which outside face is of which body; shared with C++, see
+// shared.h.
 #ifndef QUADGRAPH_REFRACTION_H
 #define QUADGRAPH_REFRACTION_H
 
@@ -17,9 +18,9 @@ struct Refraction {
   uint entering;        // picture of environments that enters (ENVIRONMENT_ENTERING)
 };
 
-// Kinds of the outside faces of a level: the address of a Refraction for each body in two words, low and high, the count
-// of the faces; then for each of these whether light passes it (engine/file/graph.h), and from bit FACE_BODY on the
-// number of its body.
+// Kinds of the outside faces of a level: the address of a Refraction for each body in two words, low and high, the
+// count of the faces; then for each of these whether light passes it (engine/file/graph.h), and from bit FACE_BODY on
+// the number of its body.
 const uint FACE_HEAD = 3u;
 const uint FACE_OPEN = 0u;
 const uint FACE_REFLECTING = 1u;

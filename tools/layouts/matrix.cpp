@@ -109,7 +109,7 @@ void append_body(const Matrix& matrix, std::uint32_t padding, Matrix& result) {
 
 Matrix matrix_of(const Level& level, const Problem& problem, std::span<const gpu::Optical> at_vertices) {
   Matrix matrix{.model = problem.model,
-                .boundary = problem.boundary(),
+                .boundary = problem.boundaries().of(0),
                 .even = all_equal(problem.optical),
                 .rows = assemble(level, problem),
                 .terms = {},

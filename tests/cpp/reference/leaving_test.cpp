@@ -47,7 +47,7 @@ struct Slabs {
 
   LeavingLight along(double eta, const glm::dvec3& outside) const {
     const Problem problem{Method::fem, Source::buried, Model::sp3, optical, eta};
-    return leaving(level, problem, {phi, none}, scale, pi, top, glm::dvec3(1.0 / 3), outside);
+    return leaving(level, problem, {phi, none}, scale, top, glm::dvec3(1.0 / 3), outside);
   }
 };
 

@@ -68,7 +68,7 @@ TEST_CASE("furnace: what the published differences miss is Q times their Laplaci
   const Problem problem{Method::quadgraph_fdm, Source::diffuse, Model::diffusion, optical, 1.3};
   const Rows rows = assemble(level, problem);
   const auto b = diffuse_load(level, problem, q);
-  const double source = problem.boundary().source;
+  const double source = problem.boundaries().of(0).source;
   std::vector<Field> x;
   for (const glm::dvec3& to_phi : rows.to_phi) x.push_back({source / to_phi});
   const auto y = quadgraph::apply(rows, x);

@@ -75,7 +75,7 @@ struct Assembled {
   // The blocks of rows that are stored as one record (shaders/solver/stored_rows.glsl).
   std::vector<Block> compact(double masses, double area, bool stiffness) {
     const auto v = get<float>(op.row_sum);
-    const Boundary boundary = problem.boundary();
+    const Boundary boundary = problem.boundaries().of(0);
     const auto three = [&](std::size_t k) { return glm::dvec3(v[k], v[k + 1], v[k + 2]); };
     std::vector<Block> result;
     constexpr std::size_t head = 3, row = sizeof(gpu::Sp3Row) / sizeof(float);

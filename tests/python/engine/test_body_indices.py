@@ -246,3 +246,15 @@ def test_an_index_that_cannot_be_is_refused_by_the_name_of_its_body(baked, eta):
         with pytest.raises(InputError, match="eta"):
             engine.materials = {"left": LOW, "right": "marble,eta=glass"}
         assert engine.material == LOW
+
+
+def test_derivatives_want_one_index_and_name_the_bodies_that_differ(baked):
+    with Engine(baked["near"]) as engine:
+        engine.lights = LIGHTS
+        engine.materials = {"left": LOW, "right": HIGH}
+        engine.solve(**WAYS["diffusion"])
+        with pytest.raises(InputError, match=r"derivatives: eta=1.05 found of 'left' and eta=1.7 of 'right'.*same eta"):
+            engine.forward_model()
+        engine.materials = {"left": LOW, "right": at_index(HIGH, 1.05)}
+        engine.solve(**WAYS["diffusion"])
+        assert engine.forward_model() is not None
