@@ -60,7 +60,11 @@ void set_materials_of(Scene& scene, const OptionValue& value) {
     if (at == std::string::npos || !is_body_name(body)) {
       throw InputError("material-of: found '" + text + "', expected BODY=M, such as cup=porcelain");
     }
-    check_material_text(text.substr(at + 1));
+    try {
+      check_material_text(text.substr(at + 1));
+    } catch (const InputError& error) {
+      throw InputError("material of '" + body + "': " + error.what());
+    }
     scene.materials[body] = text.substr(at + 1);
   }
 }

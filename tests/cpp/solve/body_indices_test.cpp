@@ -70,16 +70,17 @@ TEST_CASE("two bodies at two indices are solved as in the reference, by every me
 TEST_CASE("indices are one for all or one for each body, and where they cannot be nothing changes") {
   TwoCubes cubes;
   cubes.at(eta);
-  CHECK_THROWS_WITH_AS(cubes.at(std::array{1.1f, 1.2f, 1.3f}), "eta: 3 found, one for all, or one for each of 2 bodies wanted",
-                       InputError);
+  CHECK_THROWS_WITH_AS(cubes.at(std::array{1.1f, 1.2f, 1.3f}),
+                       "eta: 3 found, one for all, or one for each of 2 bodies wanted", InputError);
   CHECK_THROWS_WITH_AS(cubes.at(std::array{1.1f, 0.5f}), doctest::Contains("allowed is 1 to 3"), InputError);
   CHECK(std::ranges::equal(cubes.simulation.eta(), eta));
   cubes.at(std::array{1.4f});
   CHECK(std::ranges::equal(cubes.simulation.eta(), std::array{1.4f, 1.4f}));
   const Problem problem{Method::fem, Source::buried, Model::sp3, {}, Indices(std::vector<double>{1, 1.5, 2})};
   const std::vector<gpu::Optical> optical = cubes.optical(0);
-  CHECK_THROWS_AS(assemble(cubes.graph.levels()[0], {problem.method, problem.source, problem.model, optical, problem.eta}),
-                  InputError);
+  CHECK_THROWS_AS(
+      assemble(cubes.graph.levels()[0], {problem.method, problem.source, problem.model, optical, problem.eta}),
+      InputError);
 }
 
 TEST_CASE("as many bits name a body as tell all apart, and none where they are alike") {

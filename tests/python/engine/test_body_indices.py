@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import subprocess
+
 import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
+from engine_program import ENGINE
 from quadgraph import Engine
 from quadgraph.baking.bodies import BodyMesh, bake_bodies
 from quadgraph.baking.pipeline import BakeOptions, bake
@@ -258,3 +261,22 @@ def test_derivatives_want_one_index_and_name_the_bodies_that_differ(baked):
         engine.materials = {"left": LOW, "right": at_index(HIGH, 1.05)}
         engine.solve(**WAYS["diffusion"])
         assert engine.forward_model() is not None
+
+
+def test_a_volume_brings_the_index_of_its_body(baked, tmp_path):
+    cell = np.ones((1, 1, 1, 3), np.float32)
+    np.savez(tmp_path / "even.npz", sigma_s_prime=1.5 * cell, sigma_a=0.02 * cell, spacing=100.0, eta=1.6)
+    text = "sigma_s_prime=1.5,sigma_a=0.02,eta=1.6"
+    one, _ = shown(baked["near"], {"left": LOW, "right": text}, **WAYS["sp3"])
+    other, _ = shown(baked["near"], {"left": LOW, "right": str(tmp_path / "even.npz")}, **WAYS["sp3"])
+    for name in one:
+        assert off(other[name], one[name]) < 1e-5
+
+
+def test_the_program_of_the_engine_names_the_body_of_a_wrong_index(baked, tmp_path):
+    picture = tmp_path / "two.png"
+    command = [ENGINE, baked["near"], "--headless", "--material-of", "right=marble,eta=3.5", "-o", picture]
+    done = subprocess.run([*map(str, command)], capture_output=True, text=True, check=False)
+    assert done.returncode != 0
+    assert "material of 'right': material field 'eta': found '3.5" in done.stderr
+    assert not picture.exists()
