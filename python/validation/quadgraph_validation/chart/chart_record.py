@@ -73,6 +73,19 @@ def without_picture(point: dict[str, Any]) -> float:
     return sum(ms for stage, ms in point["stages"].items() if stage != "picture")
 
 
+def flicker_text(point: dict[str, Any]) -> str:
+    """How much a point's frames flicker in motion, of converged ones; empty if it was not judged so."""
+    motion = point.get("motion")
+    return f"{100 * motion['flicker']:.2g}%" if motion else ""
+
+
+def lag_text(point: dict[str, Any]) -> str:
+    """By how many frames a point's pictures are behind light and camera, with standard errors; empty as above."""
+    motion = point.get("motion")
+    lags = (motion["lag"][name] for name in ("light", "camera")) if motion else ()
+    return " / ".join(f"{lag['frames']:.2f} ± {lag['error']:.2f}" for lag in lags)
+
+
 def families(record: dict[str, Any]) -> list[str]:
     """All families, in the order of their first points."""
     return list(dict.fromkeys(point["family"] for scene in record["scenes"] for point in scene["points"]))
@@ -126,7 +139,7 @@ def short(point: dict[str, Any]) -> str:
 def kind(point: dict[str, Any]) -> str:
     """What a point is a variation of its family in: one of KINDS."""
     settings = point["settings"]
-    if settings["bake"] != "chain":
+    if settings["bake"] != "chain":  # path tracing, too, which bakes nothing
         return settings["bake"]
     if settings.get("cycles"):
         return "cycles"
@@ -153,6 +166,7 @@ KINDS = {
     "default": ("*", "star", "on the mesh that `bake` makes by default"),
     "polygrid": ("X", "x", "on a polygrid of the body"),
     "K": ("P", "cross", "on the paper's meshes, smaller: larger K"),
+    "traced": ("v", "triangle-down", "path tracing, by samples a pixel"),
 }
 _COLOURS = {
     "fem, SP₃": "#1f77b4",
@@ -168,6 +182,8 @@ _COLOURS = {
     "polygrid, as published": "#d4a017",
     "polygrid-divergence, diffusion": "#8a6d0b",
     "dipole per vertex": "#7f7f7f",
+    "path tracing": "#111111",
+    "path tracing, 15 scatterings at most": "#e34a33",
 }
 _MORE = ("#17a2a2", "#bcbd22", "#8c564b", "#e377c2")
 

@@ -103,11 +103,11 @@ def _front(axis: Any, panel: Panel) -> None:
 
 
 def _series(panel: Panel) -> list[list[int]]:
-    """Points that differ in the level alone, or in K alone, at least two."""
+    """Points that differ in the level alone, in K alone, or in samples alone, at least two."""
     found: dict[tuple, list[int]] = {}
     for index, point in enumerate(panel.points):
         settings = point["settings"].items()
-        key = tuple((name, value) for name, value in sorted(settings) if name not in ("level", "K"))
+        key = tuple((name, value) for name, value in sorted(settings) if name not in ("level", "K", "samples"))
         found.setdefault((point["family"], *key), []).append(index)
     ordered = (sorted(series, key=lambda i: records.coarseness(panel.points[i])) for series in found.values())
     return [series for series in ordered if len(series) > 1]
