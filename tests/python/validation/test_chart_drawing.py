@@ -130,6 +130,26 @@ def test_the_picture_has_four_panels_at_the_width_of_the_readme(drawn):
     assert (drawn / "chart-bunny.png").stat().st_size < 300_000
 
 
+def test_flicker_and_lag_are_columns_and_a_panel(drawn, record_path, tmp_path, capsys):
+    moving = record(("bunny",))
+    lag = {"light": {"frames": 0.5, "error": 0.1}, "camera": {"frames": -0.01, "error": 0.02}}
+    for point, flicker in zip(moving["scenes"][0]["points"], (0.013, 0.0, 0.2), strict=False):
+        point["motion"] = {"flicker": flicker, "lag": lag}
+    last = records.panels(moving["scenes"][0])[-1]
+    assert last.title.startswith("in motion: flicker")
+    assert last.errors == [0.2, 0.013]  # by time; on a scale of decades there is no 0
+    assert last.front == [0, 1]
+    static_chart.write(tmp_path, moving)
+    sizes = [Image.open(folder / "chart-bunny.png").size for folder in (drawn, tmp_path)]
+    assert sizes[0][0] == sizes[1][0]
+    assert sizes[0][1] < sizes[1][1]
+    record_path.write_text(json.dumps(moving))
+    assert cli.main(["chart", "--from", str(record_path)]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert sum("0.50 ± 0.10 / -0.01 ± 0.02" in line for line in lines) == 3
+    assert sum(" 1.3% " in line for line in lines) == 1
+
+
 def test_labels_cover_neither_each_other_nor_points():
     from matplotlib import pyplot
 

@@ -14,12 +14,14 @@ from quadgraph_validation.chart.pareto import front
 FORMAT = 3
 PARTS = ("whole", "unlit")
 TRUTHS = {"pde": "PDE truth: error of mesh and solver", "transport": "path tracing: error of the picture"}
+MOTION = "motion"  # in place of a truth, for what flickers
 _NEEDED = ("format", "scenes")
 
 
 @dataclass(frozen=True)
 class Panel:
-    """The points of a scene that have an error against one truth over one part, by time, and which make the front.
+    """The points of a scene that have an error against one truth over one part, by time, and which make the front; or
+    flicker in motion, beside no truth.
 
     times: ms of a frame, for the PDE truth without its picture, which does not enter; noise: of the truth, relative;
     the largest of the PDE truths'.
@@ -36,6 +38,8 @@ class Panel:
     @property
     def title(self) -> str:
         """In words."""
+        if self.truth == MOTION:
+            return "in motion: flicker, of converged frames"
         return f"{TRUTHS[self.truth]}, {'whole' if self.part == 'whole' else 'unlit part'}"
 
     @property
@@ -45,9 +49,17 @@ class Panel:
 
 
 def panels(scene: dict[str, Any]) -> list[Panel]:
-    """Those of a scene that have any points: truth by truth, the whole first."""
-    found = [_panel(scene, truth, part) for truth in TRUTHS for part in PARTS]
+    """Those of a scene that have any points: truth by truth, the whole first, and last what flickers."""
+    found = [*(_panel(scene, truth, part) for truth in TRUTHS for part in PARTS), _flicker_panel(scene)]
     return [panel for panel in found if panel.points]
+
+
+def _flicker_panel(scene: dict[str, Any]) -> Panel:
+    moving = [point for point in scene["points"] if (point.get("motion") or {}).get("flicker")]
+    points = sorted(moving, key=lambda point: point["ms"])
+    times = [point["ms"] for point in points]
+    flickers = [point["motion"]["flicker"] for point in points]
+    return Panel(MOTION, PARTS[0], points, times, flickers, front(list(zip(times, flickers, strict=True))), 0.0)
 
 
 def _panel(scene: dict[str, Any], truth: str, part: str) -> Panel:
