@@ -14,6 +14,7 @@ from quadgraph_validation.bodies import scenes
 from quadgraph_validation.bodies.media import Medium
 from quadgraph_validation.bodies.scenes import PIXELS, StudyScene, View
 from quadgraph_validation.chart import chart_measure as measuring
+from quadgraph_validation.chart import chart_pictures
 from quadgraph_validation.chart.chart_body import ChartBody
 from quadgraph_validation.chart.chart_judge import ChartJudge
 from quadgraph_validation.chart.chart_method import MethodChain, pde_of
@@ -124,3 +125,20 @@ def test_without_mitsuba_the_chart_goes_on_without_it(body, monkeypatch):
     assert not points[1].failed
     told = measuring.scene_record(body, ChartJudge(body, {}, {}), points)
     assert told["points"][0]["failed"] == points[0].failed
+
+
+def test_pictures_show_what_the_cut_loses_beside_ours():
+    """And ours is no path tracing, however close it comes."""
+
+    def point(method, error):
+        return measuring.ChartPoint(method, errors={"pde": None, "transport": {"whole": error}}, pictures={})
+
+    points = [
+        point(TracedMethod(16), 0.01),
+        point(EngineMethod(level=1), 0.05),
+        point(EngineMethod(), 0.04),
+        point(TracedMethod(1, CUT), 0.2),
+        point(TracedMethod(4, CUT), 0.15),
+    ]
+    closest = {title: chart_pictures._closest(points, family) for title, family in chart_pictures.SHOWN.items()}
+    assert closest == {"published": None, "ours": points[2], "dipole": None, "15 scatterings": points[4]}
