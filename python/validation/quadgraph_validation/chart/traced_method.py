@@ -22,7 +22,7 @@ TRACED = "traced"  # `bake` of what is not baked
 CUT = 15  # scatterings: `omni:rtx:rtpt:maxVolumeBounces` of NVIDIA's RTX renderer in real time, unless one changes it
 _SAMPLES = (1, 4, 16)  # of a pixel
 _MOST_MOVING = 4  # of a pixel, in frames that are judged in motion: further ones take too long
-_ROULETTE = 5  # events from which on paths may end by chance, Mitsuba's default: quicker for the same noise
+_ROULETTE = 50  # events from which on paths may end by chance: from Mitsuba's 5 on, dense bodies get heavy tails
 _AT_REST = 16  # samples of a pixel of PIXELS, in a frame that stands for a converged one
 _REFLECTED = 64  # the same of what the surface reflects, which is no noise of the method's
 _SEED = 1 << 20  # the first one: the truth's are below
@@ -58,6 +58,7 @@ class TracedMethod(PreparedMethod):
         equations = {"method": "path-tracing", "model": "transport", "source": "paths", "solver": "volpath"}
         display = {"level": 0, "inter_reflection": True, "radiance": "traced", "cycles": 0, "tolerance": None}
         told = equations | display | {"bake": TRACED, "K": None, "samples": self.samples, "scatterings": self.most}
+        told |= {"roulette": _ROULETTE}
         return told | {"runs_on": f"processor (Mitsuba {path_tracing.MITSUBA}); its scene is made untimed"}
 
     @property
