@@ -122,6 +122,36 @@ def test_the_page_on_the_chart_says_what_the_record_does(request):
         assert told == [" / ".join(f"{100 * error:.3g}%" for error in errors if error) for errors in found]
 
 
+# Rows of the table of flicker and lag in docs/chart.md, to the names of their points.
+MOVING = {
+    "SP₃, inter-reflection, one cycle, chain": "fem, SP₃, inter-reflection · level 0 · fmg-pcg · 1 cycle a frame",
+    "SP₃, inter-reflection, one cycle, default bake": COLUMNS[-1],
+    "corrected in motion, chain": "fem, SP₃, inter-reflection, corrected · level 0 · fmg-pcg · in motion",
+    "corrected in motion, default bake": (
+        "fem, SP₃, inter-reflection, corrected · default bake · level 0 · fmg-pcg · in motion"
+    ),
+    "path tracing, 1 sample a pixel": "path tracing · 1 sample a pixel",
+    "path tracing, 4 samples a pixel": "path tracing · 4 samples a pixel",
+    "15 scatterings at most, 1 sample a pixel": "path tracing, 15 scatterings at most · 1 sample a pixel",
+    "15 scatterings at most, 4 samples a pixel": "path tracing, 15 scatterings at most · 4 samples a pixel",
+}
+
+
+def test_the_page_on_the_chart_says_how_steady_frames_are(request):
+    docs = request.config.rootpath / "docs"
+    lines = (docs / "chart.md").read_text().splitlines()
+    (scene,) = [one for one in records.read(docs / "benchmarks" / "chart.json")["scenes"] if one["name"] == "bunny"]
+    points = {point["name"]: point for point in scene["points"]}
+    for words, name in MOVING.items():
+        point = points[name]
+        errors = " / ".join(f"{100 * point['errors']['transport'][part]:.3g}%" for part in records.PARTS)
+        cells = (f"{point['ms']:,.0f}", errors, records.flicker_text(point), records.lag_text(point))
+        assert f"| {words} | {' | '.join(cells)} |" in lines
+    as_long = ("path tracing, 4 samples a pixel", "corrected in motion, default bake")
+    traced, ours = (points[MOVING[words]]["motion"]["flicker"] for words in as_long)
+    assert traced > 10 * ours
+
+
 def test_the_picture_has_four_panels_at_the_width_of_the_readme(drawn):
     assert [panel.part for panel in records.panels(record()["scenes"][0])] == ["whole", "unlit"] * 2
     width, height = Image.open(drawn / "chart-bunny.png").size
