@@ -9,6 +9,7 @@ import pytest
 from quadgraph import cli
 from quadgraph_validation.accuracy import (
     coarse_study,
+    cutoff_study,
     half_space_study,
     orders_study,
     radiance_study,
@@ -25,6 +26,7 @@ MODULES = {
     "sphere": sphere_study,
     "half-space": half_space_study,
     "similarity": similarity_study,
+    "cutoff": cutoff_study,
     "orders": orders_study,
     "coarse": coarse_study,
     "radiance": radiance_study,

@@ -122,12 +122,62 @@ def test_the_page_on_the_chart_says_what_the_record_does(request):
         assert told == [" / ".join(f"{100 * error:.3g}%" for error in errors if error) for errors in found]
 
 
+# Rows of the table of flicker and lag in docs/chart.md, to the names of their points.
+MOVING = {
+    "SP₃, inter-reflection, one cycle, chain": "fem, SP₃, inter-reflection · level 0 · fmg-pcg · 1 cycle a frame",
+    "SP₃, inter-reflection, one cycle, default bake": COLUMNS[-1],
+    "corrected in motion, chain": "fem, SP₃, inter-reflection, corrected · level 0 · fmg-pcg · in motion",
+    "corrected in motion, default bake": (
+        "fem, SP₃, inter-reflection, corrected · default bake · level 0 · fmg-pcg · in motion"
+    ),
+    "path tracing, 1 sample a pixel": "path tracing · 1 sample a pixel",
+    "path tracing, 4 samples a pixel": "path tracing · 4 samples a pixel",
+    "15 scatterings at most, 1 sample a pixel": "path tracing, 15 scatterings at most · 1 sample a pixel",
+    "15 scatterings at most, 4 samples a pixel": "path tracing, 15 scatterings at most · 4 samples a pixel",
+}
+
+
+def test_the_page_on_the_chart_says_how_steady_frames_are(request):
+    docs = request.config.rootpath / "docs"
+    lines = (docs / "chart.md").read_text().splitlines()
+    (scene,) = [one for one in records.read(docs / "benchmarks" / "chart.json")["scenes"] if one["name"] == "bunny"]
+    points = {point["name"]: point for point in scene["points"]}
+    for words, name in MOVING.items():
+        point = points[name]
+        errors = " / ".join(f"{100 * point['errors']['transport'][part]:.3g}%" for part in records.PARTS)
+        cells = (f"{point['ms']:,.0f}", errors, records.flicker_text(point), records.lag_text(point))
+        assert f"| {words} | {' | '.join(cells)} |" in lines
+    as_long = ("path tracing, 4 samples a pixel", "corrected in motion, default bake")
+    traced, ours = (points[MOVING[words]]["motion"]["flicker"] for words in as_long)
+    assert traced > 10 * ours
+
+
 def test_the_picture_has_four_panels_at_the_width_of_the_readme(drawn):
     assert [panel.part for panel in records.panels(record()["scenes"][0])] == ["whole", "unlit"] * 2
     width, height = Image.open(drawn / "chart-bunny.png").size
     assert 1200 <= width <= 1800
     assert 700 <= height <= 1400
     assert (drawn / "chart-bunny.png").stat().st_size < 300_000
+
+
+def test_flicker_and_lag_are_columns_and_a_panel(drawn, record_path, tmp_path, capsys):
+    moving = record(("bunny",))
+    lag = {"light": {"frames": 0.5, "error": 0.1}, "camera": {"frames": -0.01, "error": 0.02}}
+    for point, flicker in zip(moving["scenes"][0]["points"], (0.013, 0.0, 0.2), strict=False):
+        point["motion"] = {"flicker": flicker, "lag": lag}
+    last = records.panels(moving["scenes"][0])[-1]
+    assert last.title.startswith("in motion: flicker")
+    assert last.errors == [0.2, 0.013]  # by time; on a scale of decades there is no 0
+    assert last.front == [0, 1]
+    static_chart.write(tmp_path, moving)
+    sizes = [Image.open(folder / "chart-bunny.png").size for folder in (drawn, tmp_path)]
+    assert sizes[0][0] == sizes[1][0]
+    assert sizes[0][1] < sizes[1][1]
+    record_path.write_text(json.dumps(moving))
+    assert cli.main(["chart", "--from", str(record_path)]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert sum("0.50 ± 0.10 / -0.01 ± 0.02" in line for line in lines) == 3
+    assert sum(" 1.3% " in line for line in lines) == 1
 
 
 def test_labels_cover_neither_each_other_nor_points():

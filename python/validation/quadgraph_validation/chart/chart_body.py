@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,28 +16,50 @@ from quadgraph.file import qgraph_file, sections
 from quadgraph.mesh.surface import Surface
 from quadgraph_validation.bodies import level_chains
 from quadgraph_validation.bodies.scene_bakes import Choice, SceneBake
-from quadgraph_validation.bodies.scenes import StudyScene
+from quadgraph_validation.bodies.scenes import StudyScene, View
 from quadgraph_validation.chart.chart_method import MethodChain
 from quadgraph_validation.chart.pixels import Hits, hits
 
 if TYPE_CHECKING:
     from quadgraph.core import Engine
+    from quadgraph_validation.truth.truth_run import TracedSubject
 
 STEP_DEGREES = 5.0  # by which a parallel light turns from frame to frame
 STEP_SHARE = 0.05  # by which a uniform light dims, which has no direction to turn
 MOTION_DEGREES = 3.0  # by which a light turns for methods in motion, and uniform light dims in proportion
+MOTION_SHARE = MOTION_DEGREES / STEP_DEGREES  # of a step of the light, that it goes on by there
+CAMERA_DEGREES = 1.0  # by which the camera goes around where it moves
 
 
 def light_at(scene: StudyScene, step: float) -> str:
     """The scene's light as the engine reads it, `step` frames before it has arrived."""
+    way = direction_at(scene, step)
+    if way is None:
+        return f"ambient:{strength_at(scene, step):g}"
+    return f"directional:{','.join(f'{x:.9g}' for x in way)}:1"
+
+
+def direction_at(scene: StudyScene, step: float) -> tuple[float, float, float] | None:
+    """The way (3,) that parallel light travels, `step` frames before it has arrived; None of uniform light."""
     if scene.direction is None:
-        return f"ambient:{1 - STEP_SHARE * step:g}"
+        return None
     way = np.array(scene.direction, float)
     axis = np.cross(way, [0.0, 1.0, 0.0] if abs(way[1]) < 0.9 * np.linalg.norm(way) else [1.0, 0.0, 0.0])
     axis /= np.linalg.norm(axis)
     angle = np.radians(STEP_DEGREES * step)
-    turned = way * np.cos(angle) + np.cross(axis, way) * np.sin(angle)
-    return f"directional:{','.join(f'{x:.9g}' for x in turned)}:1"
+    x, y, z = way * np.cos(angle) + np.cross(axis, way) * np.sin(angle)
+    return float(x), float(y), float(z)
+
+
+def strength_at(scene: StudyScene, step: float) -> float:
+    """The light over the scene's own, `step` frames before it has arrived."""
+    return 1 - STEP_SHARE * step if scene.direction is None else 1.0
+
+
+def view_at(scene: StudyScene, step: float) -> View:
+    """The scene's first view from where the camera is, `step` frames before it has arrived there."""
+    view = next(iter(scene.views.values()))
+    return replace(view, azimuth=view.azimuth - CAMERA_DEGREES * step)
 
 
 @dataclass(frozen=True)
@@ -51,7 +73,8 @@ class Display:
 @dataclass
 class ChartBody:
     """A scene's baked chain, at `path`; files of its coarser levels go to `folder`. pixels: edge of a frame's picture;
-    others: the same body baked in further ways, made when they are first asked for.
+    others: the same body baked in further ways, made when they are first asked for; original: the scene with its own
+    mesh, for path tracing, None where no path-traced truth judges.
 
     The first engine of each system is kept, so that frames assemble nothing, and methods that differ in the solver
     alone share it.
@@ -63,8 +86,9 @@ class ChartBody:
     device: str
     pixels: int
     others: Mapping[Choice, SceneBake] = field(default_factory=dict)
+    original: TracedSubject | None = None
     _engines: dict[tuple, Engine] = field(default_factory=dict)
-    _hits: dict[str, Hits] = field(default_factory=dict)
+    _hits: dict[View, Hits] = field(default_factory=dict)
 
     @cached_property
     def file(self) -> qgraph_file.QGraphFile:
@@ -76,7 +100,8 @@ class ChartBody:
         """What there is to choose methods by."""
         seen = sections.read_exchange(self.file)
         faces = (len(self.file.sections[f"level{level}/faces"]) for level in range(self.file.level_count))
-        return MethodChain(tuple(faces), None if seen is None else seen.level, tuple(self.others))
+        seeing = None if seen is None else seen.level
+        return MethodChain(tuple(faces), seeing, tuple(self.others), self.original is not None)
 
     def level_path(self, level: int, choice: Choice | None = None) -> Path:
         """A file whose finest level that is, of the chain or of the body baked in another way.
@@ -116,14 +141,21 @@ class ChartBody:
         return Display(sections["display/face"], sections["display/barycentric"])
 
     def hits(self, view: str) -> Hits:
-        """Where the rays of a view meet the display mesh."""
+        """Where the rays of a view of the scene meet the display mesh."""
+        return self._hits_from(self.scene.views[view])
+
+    def _hits_from(self, view: View) -> Hits:
         if view not in self._hits:
-            self._hits[view] = hits(self.display, self.file.sections["display/normals"], self.scene.views[view])
+            self._hits[view] = hits(self.display, self.file.sections["display/normals"], view)
         return self._hits[view]
 
     def coverage(self, view: str) -> np.ndarray:
         """Share (PIXELS, PIXELS) of each pixel that the body covers."""
-        return self.hits(view).shown(self.display.triangles, np.ones((len(self.display.vertices), 1)))[..., 0]
+        return self.coverage_from(self.scene.views[view])
+
+    def coverage_from(self, view: View) -> np.ndarray:
+        """The same from anywhere."""
+        return self._hits_from(view).shown(self.display.triangles, np.ones((len(self.display.vertices), 1)))[..., 0]
 
     def lit(self) -> np.ndarray:
         """(n_d,) bool, whether where a vertex of the display mesh lies is not unlit."""

@@ -11,9 +11,11 @@ import numpy as np
 
 from quadgraph.base.errors import SolverError, ToolError
 from quadgraph.base.progress import ProgressCallback
+from quadgraph_validation.chart import motion_measure
 from quadgraph_validation.chart.chart_body import MOTION_DEGREES, STEP_DEGREES, STEP_SHARE, ChartBody
 from quadgraph_validation.chart.chart_judge import ChartJudge
-from quadgraph_validation.chart.chart_method import SETTLED, SWING, ChartMethod, bake_settings
+from quadgraph_validation.chart.chart_method import SETTLED, SWING, ChartMethod, MovingMethod, bake_settings
+from quadgraph_validation.chart.motion_measure import MotionCourse
 from quadgraph_validation.truth.path_tracing import BATCH
 
 # What a frame consists of, by the passes of the engine and of others; the rest is the solver's.
@@ -21,18 +23,24 @@ STAGES = {
     "light": ("shadow maps", "irradiance", "path light"),
     "source": ("source walk", "surface share", "right-hand side"),
     "exitance": ("exitance", "energy", "path field"),
-    "picture": ("gather points", "uncollided", "gathered exitance", "gather scale", "surface", "resolve", "gather"),
+    "picture": (
+        *("gather points", "uncollided", "gathered exitance", "gather scale", "surface", "resolve", "gather"),
+        "path tracing",
+    ),
 }
 
 
 @dataclass
 class ChartPoint:
-    """A method, the passes of all its frames in ms, its errors and pictures, or why there are none."""
+    """A method, the passes of all its frames in ms, its errors and pictures, how steady it is in motion (None: not
+    judged so), or why there are none.
+    """
 
     method: ChartMethod
     frames: list[dict[str, float]] = field(default_factory=list)
     errors: dict[str, dict[str, float] | None] = field(default_factory=dict)
     pictures: dict[str, np.ndarray] = field(default_factory=dict)
+    motion: dict[str, Any] | None = None
     failed: str = ""
 
     def record(self) -> dict[str, Any]:
@@ -48,6 +56,7 @@ class ChartPoint:
             "stages": {name: round(ms, 4) for name, ms in stages(passes).items()},
             "passes": {name: round(ms, 4) for name, ms in passes.items()},
             "errors": self.errors,
+            "motion": self.motion,
         }
 
 
@@ -73,7 +82,22 @@ def measure(
             tell(f"{body.scene.name}: {progress}: {point.method.name}")
             if not point.failed:
                 _round(body, judge, point)
+    if body.original is not None:
+        _in_motion(body, points, tell)
     return points
+
+
+def _in_motion(body: ChartBody, points: Sequence[ChartPoint], tell: ProgressCallback) -> None:
+    """Judge what moves, after all times: what frames converge to takes long."""
+    course = MotionCourse(body)
+    done = [(point, point.method) for point in points if not point.failed]
+    moving = [(point, method) for point, method in done if isinstance(method, MovingMethod) and method.moves]
+    for number, (point, method) in enumerate(moving):
+        tell(f"{body.scene.name}: in motion, method {number + 1} of {len(moving)}: {method.name}")
+        try:
+            point.motion = course.steadiness(method)
+        except (SolverError, ToolError) as error:
+            point.failed = str(error)
 
 
 def _round(body: ChartBody, judge: ChartJudge, point: ChartPoint) -> None:
@@ -118,4 +142,4 @@ def conditions(repeats: int, pixels: int) -> dict[str, Any]:
     """What holds for all points of a scene, for the record."""
     frame = {"pixels": pixels, "light_turns_degrees": STEP_DEGREES, "even_light_dims": STEP_SHARE}
     frame |= {"light_turns_degrees_in_motion": MOTION_DEGREES}
-    return {"repeats": repeats, "settled": SETTLED, "frame": frame}
+    return {"repeats": repeats, "settled": SETTLED, "frame": frame, "motion": motion_measure.conditions()}

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -67,10 +67,38 @@ class ChartMethod(Protocol):
         """Move the light to a step and do all that a live frame does, a picture included; ms by pass."""
 
     def exitance(self) -> np.ndarray:
-        """Exitance of scattered light after the last frame per face of the level, (n_f, 3) W/mm^2."""
+        """Exitance of scattered light after the last frame per face of the level, (n_f, 3) W/mm^2; asked of those alone
+        that a PDE truth can judge.
+        """
 
     def picture(self, view: str) -> np.ndarray:
         """Radiance of light that was in the body, (PIXELS, PIXELS, 3) W/(mm^2 sr), after the last frame."""
+
+
+@runtime_checkable
+class MovingMethod(ChartMethod, Protocol):
+    """One whose frames can be judged while camera and light move; steps of both, of MOTION_DEGREES, are counted down to
+    0, where they have arrived. Pictures are as of `picture`.
+    """
+
+    @property
+    def moves(self) -> bool:
+        """Whether these settings are judged so."""
+
+    @property
+    def noisy(self) -> bool:
+        """Whether pictures at rest are made by random numbers."""
+
+    def begin(self, body: ChartBody, step: float) -> None:
+        """Be where a program is that has drawn frames for a while, the last of them at that step."""
+
+    def moving(self, step: float) -> np.ndarray:
+        """Draw one more frame, with light and camera at a step."""
+
+    def at_rest(self, light: float, views: Sequence[float], seed: int) -> list[np.ndarray]:
+        """What it shows once nothing changes any more, with the light at one step, from the camera at each of some;
+        another seed draws other random numbers, where there are any.
+        """
 
 
 @dataclass
@@ -88,12 +116,14 @@ class PreparedMethod:
 @dataclass(frozen=True)
 class MethodChain:
     """What default methods are chosen by: faces of each level, finest first, and the level whose faces know what they
-    see of each other, None if there is none; others: further ways in which the body is baked.
+    see of each other, None if there is none; others: further ways in which the body is baked; original: whether the
+    scene's own mesh is there to be traced.
     """
 
     faces: tuple[int, ...]
     seen: int | None
     others: tuple[Choice, ...] = ()
+    original: bool = False
 
 
 Provider = Callable[[MethodChain], Iterable[ChartMethod]]

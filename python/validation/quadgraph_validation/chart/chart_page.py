@@ -140,5 +140,7 @@ def _hover(point: dict[str, Any], best: bool) -> str:
         errors = point["errors"][truth]
         if errors:
             lines.append(f"{words}: " + ", ".join(f"{name} {100 * error:.3g}%" for name, error in errors.items()))
+    if flicker := records.flicker_text(point):
+        lines.append(f"in motion: flicker {flicker}, frames behind light / camera {records.lag_text(point)}")
     lines.append(f"runs on: {point['settings']['runs_on']}")
     return "<br>".join(lines + (["best at its time"] if best else []))

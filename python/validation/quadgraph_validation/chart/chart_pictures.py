@@ -9,9 +9,16 @@ from quadgraph_validation.accuracy import scene_figures
 from quadgraph_validation.accuracy.scenes_study import ScenesCompared
 from quadgraph_validation.chart.chart_judge import ChartJudge
 from quadgraph_validation.chart.chart_measure import ChartPoint
+from quadgraph_validation.chart.traced_method import CUT, TRACED
 
-# Title to the family whose picture is shown, of all its points the one that is closest; None: of all families.
-SHOWN = {"published": "quadgraph-fdm, as published", "ours": None, "dipole": "dipole per vertex"}
+# Title to the family whose picture is shown, of all its points the one that is closest; None: of all families that do
+# not trace paths.
+SHOWN = {
+    "published": "quadgraph-fdm, as published",
+    "ours": None,
+    "dipole": "dipole per vertex",
+    f"{CUT} scatterings": f"path tracing, {CUT} scatterings at most",
+}
 
 
 def write(folder: Path, judge: ChartJudge, points: Sequence[ChartPoint]) -> list[Path]:
@@ -36,6 +43,10 @@ def _closest(points: Sequence[ChartPoint], family: str | None) -> ChartPoint | N
     known = [
         (errors["whole"], number)
         for number, point in enumerate(points)
-        if (errors := point.errors.get("transport")) and family in (None, point.method.family)
+        if (errors := point.errors.get("transport")) and _is_of(point, family)
     ]
     return points[min(known)[1]] if known else None
+
+
+def _is_of(point: ChartPoint, family: str | None) -> bool:
+    return point.method.settings["bake"] != TRACED if family is None else point.method.family == family

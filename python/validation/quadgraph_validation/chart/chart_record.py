@@ -14,12 +14,14 @@ from quadgraph_validation.chart.pareto import front
 FORMAT = 3
 PARTS = ("whole", "unlit")
 TRUTHS = {"pde": "PDE truth: error of mesh and solver", "transport": "path tracing: error of the picture"}
+MOTION = "motion"  # in place of a truth, for what flickers
 _NEEDED = ("format", "scenes")
 
 
 @dataclass(frozen=True)
 class Panel:
-    """The points of a scene that have an error against one truth over one part, by time, and which make the front.
+    """The points of a scene that have an error against one truth over one part, by time, and which make the front; or
+    flicker in motion, beside no truth.
 
     times: ms of a frame, for the PDE truth without its picture, which does not enter; noise: of the truth, relative;
     the largest of the PDE truths'.
@@ -36,6 +38,8 @@ class Panel:
     @property
     def title(self) -> str:
         """In words."""
+        if self.truth == MOTION:
+            return "in motion: flicker, of converged frames"
         return f"{TRUTHS[self.truth]}, {'whole' if self.part == 'whole' else 'unlit part'}"
 
     @property
@@ -45,9 +49,17 @@ class Panel:
 
 
 def panels(scene: dict[str, Any]) -> list[Panel]:
-    """Those of a scene that have any points: truth by truth, the whole first."""
-    found = [_panel(scene, truth, part) for truth in TRUTHS for part in PARTS]
+    """Those of a scene that have any points: truth by truth, the whole first, and last what flickers."""
+    found = [*(_panel(scene, truth, part) for truth in TRUTHS for part in PARTS), _flicker_panel(scene)]
     return [panel for panel in found if panel.points]
+
+
+def _flicker_panel(scene: dict[str, Any]) -> Panel:
+    moving = [point for point in scene["points"] if (point.get("motion") or {}).get("flicker")]
+    points = sorted(moving, key=lambda point: point["ms"])
+    times = [point["ms"] for point in points]
+    flickers = [point["motion"]["flicker"] for point in points]
+    return Panel(MOTION, PARTS[0], points, times, flickers, front(list(zip(times, flickers, strict=True))), 0.0)
 
 
 def _panel(scene: dict[str, Any], truth: str, part: str) -> Panel:
@@ -71,6 +83,19 @@ def _time(point: dict[str, Any], truth: str) -> float:
 def without_picture(point: dict[str, Any]) -> float:
     """Time of a frame until the exitance is known, ms."""
     return sum(ms for stage, ms in point["stages"].items() if stage != "picture")
+
+
+def flicker_text(point: dict[str, Any]) -> str:
+    """How much a point's frames flicker in motion, of converged ones; empty if it was not judged so."""
+    motion = point.get("motion")
+    return f"{100 * motion['flicker']:.2g}%" if motion else ""
+
+
+def lag_text(point: dict[str, Any]) -> str:
+    """By how many frames a point's pictures are behind light and camera, with standard errors; empty as above."""
+    motion = point.get("motion")
+    lags = (motion["lag"][name] for name in ("light", "camera")) if motion else ()
+    return " / ".join(f"{lag['frames']:.2f} ± {lag['error']:.2f}" for lag in lags)
 
 
 def families(record: dict[str, Any]) -> list[str]:
@@ -126,7 +151,7 @@ def short(point: dict[str, Any]) -> str:
 def kind(point: dict[str, Any]) -> str:
     """What a point is a variation of its family in: one of KINDS."""
     settings = point["settings"]
-    if settings["bake"] != "chain":
+    if settings["bake"] != "chain":  # path tracing, too, which bakes nothing
         return settings["bake"]
     if settings.get("cycles"):
         return "cycles"
@@ -153,6 +178,7 @@ KINDS = {
     "default": ("*", "star", "on the mesh that `bake` makes by default"),
     "polygrid": ("X", "x", "on a polygrid of the body"),
     "K": ("P", "cross", "on the paper's meshes, smaller: larger K"),
+    "traced": ("v", "triangle-down", "path tracing, by samples a pixel"),
 }
 _COLOURS = {
     "fem, SP₃": "#1f77b4",
@@ -168,6 +194,8 @@ _COLOURS = {
     "polygrid, as published": "#d4a017",
     "polygrid-divergence, diffusion": "#8a6d0b",
     "dipole per vertex": "#7f7f7f",
+    "path tracing": "#111111",
+    "path tracing, 15 scatterings at most": "#e34a33",
 }
 _MORE = ("#17a2a2", "#bcbd22", "#8c564b", "#e377c2")
 

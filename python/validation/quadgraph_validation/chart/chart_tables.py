@@ -18,7 +18,8 @@ def all_of(record: dict[str, Any]) -> list[Table]:
 
 
 def _table(scene: dict[str, Any]) -> Table:
-    table = Table("method", "ms", "without picture", "solve", *(f"{_WORDS[truth]}, {part}" for truth, part in _COLUMNS))
+    errors = (f"{_WORDS[truth]}, {part}" for truth, part in _COLUMNS)
+    table = Table("method", "ms", "without picture", "solve", *errors, "flicker", "frames behind light / camera")
     table.title = f"{scene['name']} on {records.device_text(scene)}; *: best at its time"
     table.columns[0].no_wrap = True
     best = {
@@ -27,7 +28,7 @@ def _table(scene: dict[str, Any]) -> Table:
     done = [point for point in scene["points"] if not point.get("failed")]
     for point in sorted(done, key=lambda point: point["ms"]):
         cells = [_cell(point, column, best.get(column, [])) for column in _COLUMNS]
-        table.add_row(point["name"], *(f"{ms:.3g}" for ms in _times(point)), *cells)
+        table.add_row(point["name"], *(f"{ms:.3g}" for ms in _times(point)), *cells, *_in_motion(point))
     failed = [f"{point['name']}: {point['failed']}" for point in scene["points"] if point.get("failed")]
     table.caption = "\n".join(failed)
     return table
@@ -39,6 +40,10 @@ def _cell(point: dict[str, Any], column: tuple[str, str], best: list[str]) -> st
     if part not in errors:
         return ""
     return f"{100 * errors[part]:.3g}%" + ("*" if point["name"] in best else "")
+
+
+def _in_motion(point: dict[str, Any]) -> tuple[str, str]:
+    return records.flicker_text(point), records.lag_text(point)
 
 
 def _times(point: dict[str, Any]) -> tuple[float, float, float]:

@@ -11,12 +11,13 @@ from quadgraph.base.errors import InputError
 from quadgraph_validation.base.study_folders import COMMITTED_TRUTH
 from quadgraph_validation.bodies import scene_bakes, scene_meshes
 from quadgraph_validation.bodies.scenes import StudyScene
-from quadgraph_validation.chart import dipole_method, engine_methods, path_method  # noqa: F401  they register
+from quadgraph_validation.chart import dipole_method, engine_methods, path_method, traced_method  # noqa: F401  they register
 from quadgraph_validation.chart.chart_body import ChartBody
 from quadgraph_validation.chart.chart_judge import ChartJudge, PdeTruths
 from quadgraph_validation.chart.chart_method import ChartMethod, methods, pde_of
 from quadgraph_validation.truth import pde_truth, truth_run
 from quadgraph_validation.truth.stored_truth import StoredTruth
+from quadgraph_validation.truth.truth_run import TracedSubject
 
 # Only path tracing can judge them: as `bake` does by default, by the paper's mesher from fine to coarse, on a polygrid.
 OTHER_BAKES = (
@@ -53,17 +54,19 @@ def subject(
 
     Bakes the chain if it is not there; raises InputError if a truth in `against` is absent or stale.
     """
-    images = _images(scene, where) if "transport" in against else {}
+    original = truth_run.subject(scene, scene_meshes.file(scene, where.meshes)) if "transport" in against else None
+    images = {} if original is None else _images(original, where)
     ways = OTHER_BAKES if "transport" in against else ()
     others = {choice: scene_bakes.of(scene, choice, where.meshes, where.pde) for choice in ways}
-    body = ChartBody(scene, pde_truth.chain(scene, where.meshes, where.pde), working, device, pixels, others)
+    chain = pde_truth.chain(scene, where.meshes, where.pde)
+    body = ChartBody(scene, chain, working, device, pixels, others, original)
     chosen = methods(body.chain, wanted)
     pde = _pde(scene, where, chosen) if "pde" in against else {}
     return body, ChartJudge(body, pde, images), chosen
 
 
-def _images(scene: StudyScene, where: Folders) -> dict[str, StoredTruth]:
-    found = truth_run.subject(scene, scene_meshes.file(scene, where.meshes))
+def _images(found: TracedSubject, where: Folders) -> dict[str, StoredTruth]:
+    scene = found.scene
     images = {name: truth_run.stored(found, where.transport, name) for name in scene.images}
     for name, image in images.items():
         if image.batches < 2:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -10,8 +10,8 @@ import numpy as np
 
 from quadgraph.base.pass_report import ms_by_pass
 from quadgraph_validation.bodies.scene_bakes import Choice
-from quadgraph_validation.bodies.scenes import FOV, PIXELS
-from quadgraph_validation.chart.chart_body import MOTION_DEGREES, STEP_DEGREES, ChartBody, light_at
+from quadgraph_validation.bodies.scenes import FOV, PIXELS, View
+from quadgraph_validation.chart.chart_body import MOTION_SHARE, ChartBody, light_at, view_at
 from quadgraph_validation.chart.chart_method import (
     SETTLED,
     SWING,
@@ -80,21 +80,28 @@ class EngineMethod(PreparedMethod):
         del told["choice"]
         return told | bake_settings(self.choice) | {"tolerance": None if self.cycles else SETTLED, "runs_on": "device"}
 
+    @property
+    def moves(self) -> bool:
+        """With one cycle a frame, which live programs have."""
+        return self.cycles == 1 and self.level == 0
+
+    @property
+    def noisy(self) -> bool:
+        """By the samples of a correction."""
+        return self.sweeps > 0
+
     def prepare(self, body: ChartBody) -> None:
         """Solve for the light of some frames ago, and draw those before the ones that are timed."""
         first, self._given = self._given is not body, body
         before = _MOTION_FRAMES if self.motion else int(first)  # a first frame compiles shaders and makes room
         steps = range(SWING[0], SWING[0] + before)
-        self._set_light(max(steps, default=SWING[0]))
-        quickest = {"fem": "fmg-pcg", "polygrid": "cascade", "polygrid-divergence": "cascade"}.get(self.method, "dpcg")
-        settled = {"solver": quickest, "tolerance": SETTLED, "cycles": 0, "bounces": 0, "motion": False}
-        self._engine.solve(**self._options | settled)
+        self._settle(max(steps, default=SWING[0]), self._share)
         for step in reversed(steps):
             self.frame(step)
 
     def frame(self, step: int) -> dict[str, float]:
         """Light, source walk, solve, correction, exitance, picture."""
-        self._set_light(step)
+        self._set_light(step, self._share)
         self._engine.solve(**self._options)
         self._show(next(iter(self._body.scene.views.values())).text, self._body.pixels)
         return ms_by_pass(self._engine.passes)
@@ -105,9 +112,26 @@ class EngineMethod(PreparedMethod):
 
     def picture(self, view: str) -> np.ndarray:
         """(PIXELS, PIXELS, 3) W/(mm^2 sr). Parallel light that crosses the body stays parallel: no camera sees it."""
-        found = self._show(self._body.scene.views[view].text, PIXELS)
-        shown = np.asarray(found.scattered, np.float64)
-        return shown if self._body.scene.direction else shown + np.asarray(found.unscattered, np.float64)
+        return self._picture(self._body.scene.views[view])
+
+    def begin(self, body: ChartBody, step: float) -> None:
+        """Solve for the light of some frames ago, and go on from there."""
+        self._given = body
+        self._settle(step + _MOTION_FRAMES, MOTION_SHARE)
+        for before in reversed(range(_MOTION_FRAMES)):
+            self._set_light(step + before, MOTION_SHARE)
+            self._engine.solve(**self._options)
+
+    def moving(self, step: float) -> np.ndarray:
+        """(PIXELS, PIXELS, 3) W/(mm^2 sr)."""
+        self._set_light(step, MOTION_SHARE)
+        self._engine.solve(**self._options)
+        return self._picture(view_at(self._body.scene, step))
+
+    def at_rest(self, light: float, views: Sequence[float], seed: int) -> list[np.ndarray]:
+        """(PIXELS, PIXELS, 3) W/(mm^2 sr) each, of a solve to the tolerance, corrected where frames are."""
+        self._settle(light, MOTION_SHARE, seed)
+        return [self._picture(view_at(self._body.scene, step)) for step in views]
 
     @property
     def _bake_words(self) -> list[str]:
@@ -139,9 +163,24 @@ class EngineMethod(PreparedMethod):
         options |= {"correction": self.sweeps > 0, "warm": self.sweeps == 0}
         return {name: getattr(self, name) for name in names} | options
 
-    def _set_light(self, step: int) -> None:
-        share = MOTION_DEGREES / STEP_DEGREES if self.motion else 1.0
+    @property
+    def _share(self) -> float:
+        return MOTION_SHARE if self.motion else 1.0
+
+    def _set_light(self, step: float, share: float) -> None:
         self._engine.set_lights([light_at(self._body.scene, share * step)])
+
+    def _settle(self, step: float, share: float, seed: int = 0) -> None:
+        """Solve as for a body at rest, with the light at a step."""
+        self._set_light(step, share)
+        quickest = {"fem": "fmg-pcg", "polygrid": "cascade", "polygrid-divergence": "cascade"}.get(self.method, "dpcg")
+        settled = {"solver": quickest, "tolerance": SETTLED, "cycles": 0, "bounces": 0, "motion": False}
+        self._engine.solve(**self._options | settled | {"sweep_seed": seed})
+
+    def _picture(self, view: View) -> np.ndarray:
+        found = self._show(view.text, PIXELS)
+        shown = np.asarray(found.scattered, np.float64)
+        return shown if self._body.scene.direction else shown + np.asarray(found.unscattered, np.float64)
 
     def _show(self, view: str, pixels: int) -> Any:
         radiance = self.radiance if self._can_gather or self.radiance == "single" else "lambertian"

@@ -16,7 +16,7 @@ from quadgraph_validation.chart.labels import place
 _DPI = 110
 _SIZE = 70.0  # points^2 of the finest level's markers
 _COARSER = 0.55  # of that per level
-_DECADES = 2000.0  # times as much at the end of an axis: more ticks would run together
+_DECADES = (2000.0, 50_000.0)  # times as much at the end of an axis: more ticks would run together
 _ROOM = 0.65  # of the width of all points, on the left
 _MOST_LABELS = 9  # in a panel; of a longer front those are named that fall most below the one before
 _WORTH = 1.05  # times lower than the one before is what is named
@@ -103,11 +103,11 @@ def _front(axis: Any, panel: Panel) -> None:
 
 
 def _series(panel: Panel) -> list[list[int]]:
-    """Points that differ in the level alone, or in K alone, at least two."""
+    """Points that differ in the level alone, in K alone, or in samples alone, at least two."""
     found: dict[tuple, list[int]] = {}
     for index, point in enumerate(panel.points):
         settings = point["settings"].items()
-        key = tuple((name, value) for name, value in sorted(settings) if name not in ("level", "K"))
+        key = tuple((name, value) for name, value in sorted(settings) if name not in ("level", "K", "samples"))
         found.setdefault((point["family"], *key), []).append(index)
     ordered = (sorted(series, key=lambda i: records.coarseness(panel.points[i])) for series in found.values())
     return [series for series in ordered if len(series) > 1]
@@ -138,10 +138,11 @@ def _legend(figure: Any, scene: dict[str, Any], colours: dict[str, str]) -> None
 
 
 def _plain(axis: Any, text: Callable) -> None:
-    """1, 2, 5 of every decade, or of many 1 and 3, in plain numbers."""
+    """1, 2, 5 of every decade, of many 1 and 3, of more 1 alone, in plain numbers."""
     from matplotlib.ticker import LogLocator, NullFormatter
 
     low, high = axis.get_view_interval()
-    axis.set_major_locator(LogLocator(subs=(1, 2, 5) if high < _DECADES * low else (1, 3), numticks=12))
+    subs = ((1, 2, 5), (1, 3), (1,))[sum(high >= decades * low for decades in _DECADES)]
+    axis.set_major_locator(LogLocator(subs=subs, numticks=12))
     axis.set_major_formatter(text)
     axis.set_minor_formatter(NullFormatter())

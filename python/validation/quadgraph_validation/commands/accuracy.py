@@ -26,6 +26,7 @@ STUDIES = {
     "sphere": "sphere",
     "half-space": "half_space",
     "similarity": "similarity",
+    "cutoff": "cutoff",
     "orders": "orders",
     "coarse": "coarse",
     "dense": "dense",
@@ -44,7 +45,10 @@ STUDIES = {
     "veined": "veined",
 }
 
-_WIDE = ("dense", "similarity", "unseen", "pictures", "converging", "certificate", "acquire", "volume", "veined")
+_WIDE = (
+    *("dense", "similarity", "cutoff", "unseen", "pictures"),
+    *("converging", "certificate", "acquire", "volume", "veined"),
+)
 _TABLE_WIDTH = 190  # characters, than which the tables of these cannot be read narrower
 
 # Studies of real bodies, which the CPU reference cannot stand in for, because only the engine does what they judge.

@@ -32,15 +32,20 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Exits:
-    """Where walks ended at the surface: position (n, 3) mm, unit direction outside (n, 3), scattered (n,) bool.
+    """Where walks ended at the surface: position (n, 3) mm, unit direction outside (n, 3), scatterings before (n,) int.
 
     absorbed: how many never got there.
     """
 
     position: np.ndarray
     direction: np.ndarray
-    scattered: np.ndarray
+    scatterings: np.ndarray
     absorbed: int
+
+    @property
+    def scattered(self) -> np.ndarray:
+        """(n,) bool, which of them scattered at all."""
+        return self.scatterings > 0
 
 
 def walk(
@@ -57,12 +62,12 @@ def walk(
     which the medium's scattering is not reduced.
     """
     position, direction = (np.array(each.T, order="C") for each in (position, direction))  # (3, n): rows are quick
-    scattered = np.zeros(len(position[0]), bool)
+    scatterings = np.zeros(len(position[0]), np.int64)
     ends: list[np.ndarray] = []
     ways: list[np.ndarray] = []
-    flags: list[np.ndarray] = []
+    orders: list[np.ndarray] = []
     absorbed = 0
-    while count := len(scattered):
+    while count := len(scatterings):
         out = distance_out(position, direction)
         flight = generator.exponential(1 / medium.sigma_t, count)
         leaves = flight >= out
@@ -71,7 +76,7 @@ def walk(
         inside, at = np.flatnonzero(keep), np.flatnonzero(leaves)
         absorbed += count - len(inside) - len(at)
         direction[:, inside] = scattered_from(direction.take(inside, axis=1), g, generator)
-        scattered[inside] = True
+        scatterings[inside] += 1
         place, way = position.take(at, axis=1), direction.take(at, axis=1)
         normal = normal_at(place)
         cosine = _dot(way, normal)
@@ -81,11 +86,11 @@ def walk(
         gone = np.flatnonzero(~stays)
         ends.append(place.take(gone, axis=1))
         ways.append(_outside(way.take(gone, axis=1), normal.take(gone, axis=1), cosine[gone], eta))
-        flags.append(scattered[at[gone]])
+        orders.append(scatterings[at[gone]])
         kept = np.flatnonzero(keep)
-        position, direction, scattered = position.take(kept, axis=1), direction.take(kept, axis=1), scattered[kept]
+        position, direction, scatterings = position.take(kept, axis=1), direction.take(kept, axis=1), scatterings[kept]
     position, direction = (np.concatenate(parts, axis=1).T for parts in (ends, ways))
-    return Exits(position, direction, np.concatenate(flags), absorbed)
+    return Exits(position, direction, np.concatenate(orders), absorbed)
 
 
 def _outside(direction: np.ndarray, normal: np.ndarray, cosine: np.ndarray, eta: float) -> np.ndarray:
@@ -141,6 +146,23 @@ def slab(medium: Medium, thickness: float, eta: float, lambertian: bool, walks: 
         below = exits.position[:, 2] > thickness / 2
         scattered = exits.scattered
         counts += [(scattered & ~below).sum(), (scattered & below).sum(), exits.absorbed, (~scattered).sum()]
+    return _shares(counts, walks)
+
+
+def after_many(medium: Medium, thickness: float, eta: float, most: int, walks: int, seed: int) -> Estimate:
+    """Scattered reflectance and transmittance of a slab `thickness` mm, inf for a half-space, and of either the share
+    of all light that entered which scattered more than `most` times, (4,): R, T, late R, late T.
+
+    Light enters at z = 0, at normal incidence.
+    """
+    generator = np.random.default_rng(seed)
+    counts = np.zeros(4)
+    for size in _batches(walks):
+        direction = np.tile([0.0, 0.0, 1.0], (size, 1))
+        exits = walk(np.zeros((size, 3)), direction, medium, eta, _planes(thickness), _plane_normals, generator)
+        below, late = exits.position[:, 2] > thickness / 2, exits.scatterings > most
+        chosen = (exits.scattered & ~below, exits.scattered & below, late & ~below, late & below)
+        counts += [which.sum() for which in chosen]
     return _shares(counts, walks)
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -22,14 +23,30 @@ from quadgraph_validation.bodies.scenes import FOV, PIXELS, Grid, StudyScene, bo
 
 MITSUBA = "3.9.1"
 BATCH = 16  # samples a pixel
-# Russian roulette off: with it, thick bodies of high albedo get heavy tails.
-INTEGRATOR = {"type": "volpath", "max_depth": -1, "rr_depth": 100_000}
 _BLACK = 1e3  # 1/mm, absorption of the body whose surface reflection is taken away
+
+
+@dataclass(frozen=True)
+class PathEnds:
+    """When paths end. scatterings: the most of a path, None: any number; roulette: events from which on Russian
+    roulette may end it. The truth does without: with it, thick bodies of high albedo get heavy tails.
+    """
+
+    scatterings: int | None = None
+    roulette: int = 100_000
+
+    def integrator(self, eta: float) -> dict[str, Any]:
+        """Mitsuba's. It counts what a refracting surface does to a path as well: ways in and out are allowed for, and
+        each reflection on the inside takes the place of a scattering.
+        """
+        surface = 0 if eta == 1 else 2
+        depth = -1 if self.scatterings is None else self.scatterings + 1 + surface
+        return {"type": "volpath", "max_depth": depth, "rr_depth": self.roulette}
 
 
 def settings() -> dict[str, Any]:
     """What a picture depends on beside the scene, ready for JSON."""
-    return {"mitsuba": MITSUBA, "variant": "scalar_rgb", "integrator": INTEGRATOR, "batch": BATCH}
+    return {"mitsuba": MITSUBA, "variant": "scalar_rgb", "integrator": PathEnds().integrator(1), "batch": BATCH}
 
 
 def load_mitsuba() -> Any:
@@ -42,23 +59,38 @@ def load_mitsuba() -> Any:
 
 
 @contextmanager
-def tracer(scene: StudyScene, surface: Surface, grid: Grid, view: str) -> Iterator[Tracer]:
-    """Set up one view of a scene; its meshes live in a temporary folder."""
+def tracer(
+    scene: StudyScene, surface: Surface, grid: Grid, view: str, ends: PathEnds | None = None, pixels: int = PIXELS
+) -> Iterator[Tracer]:
+    """Set up one view of a scene, in pictures of so many pixels an edge; its meshes live in a temporary folder.
+
+    Raises InputError without Mitsuba.
+    """
     with tempfile.TemporaryDirectory(prefix="quadgraph-truth-") as folder:
-        yield Tracer(load_mitsuba(), scene, surface, grid, view, Path(folder))
+        yield Tracer(load_mitsuba(), scene, surface, grid, view, Path(folder), ends or PathEnds(), pixels)
 
 
 class Tracer:
     """One view of a scene, ready to render batch after batch."""
 
-    def __init__(self, mitsuba: Any, scene: StudyScene, surface: Surface, grid: Grid, view: str, folder: Path) -> None:
-        self._mitsuba = mitsuba
-        self._scene = scene
+    def __init__(
+        self,
+        mitsuba: Any,
+        scene: StudyScene,
+        surface: Surface,
+        grid: Grid,
+        view: str,
+        folder: Path,
+        ends: PathEnds,
+        pixels: int,
+    ) -> None:
+        self._mitsuba, self._scene, self._pixels = mitsuba, scene, pixels
         # Mitsuba moves rays off a surface by a share of the coordinates: they are kept small.
         centre, _ = bounding_sphere(surface)
         mesh = folder / "body.ply"
         trimesh.Trimesh(surface.vertices - centre, surface.triangles, process=False).export(mesh)
-        common = {"type": "scene", "integrator": INTEGRATOR, "light": self._light(), "camera": self._camera(view)}
+        common = {"type": "scene", "integrator": ends.integrator(scene.eta)}
+        common |= {"light": self._light(), "camera": self._camera(view)}
         body = {"type": "ply", "filename": str(mesh), "face_normals": True, "bsdf": self._surface()}
         self._whole = mitsuba.load_dict(common | {"body": body | {"interior": self._medium(grid, centre)}})
         self._black = None
@@ -70,11 +102,18 @@ class Tracer:
         """Radiance (h, w) W/(mm^2 sr), float64, top row first, of light that was inside the body: a mean over BATCH
         samples a pixel, each number with samples of its own.
         """
-        inside = self._render(self._whole, 2 * number)
-        return inside if self._black is None else inside - self._render(self._black, 2 * number + 1)
+        return self.whole(BATCH, 2 * number) - self.reflected(BATCH, 2 * number + 1)
 
-    def _render(self, scene: Any, seed: int) -> np.ndarray:
-        return np.array(self._mitsuba.render(scene, spp=BATCH, seed=seed), np.float64)[..., 0]
+    def whole(self, samples: int, seed: int) -> np.ndarray:
+        """All that the camera sees (h, w), W/(mm^2 sr), by so many samples a pixel."""
+        return self._render(self._whole, samples, seed)
+
+    def reflected(self, samples: int, seed: int) -> np.ndarray | float:
+        """Of that, what never was inside the body; 0 of an index-matched one in parallel light, which nobody sees."""
+        return 0.0 if self._black is None else self._render(self._black, samples, seed)
+
+    def _render(self, scene: Any, samples: int, seed: int) -> np.ndarray:
+        return np.array(self._mitsuba.render(scene, spp=samples, seed=seed), np.float64)[..., 0]
 
     def _light(self) -> dict[str, Any]:
         if self._scene.direction is None:
@@ -86,7 +125,7 @@ class Tracer:
         _, up, backward = camera_axes(self._scene.views[view])
         eye = backward * self._scene.views[view].distance
         place = self._mitsuba.ScalarTransform4f().look_at(origin=eye.tolist(), target=[0, 0, 0], up=up.tolist())
-        film = {"type": "hdrfilm", "width": PIXELS, "height": PIXELS, "rfilter": {"type": "box"}}
+        film = {"type": "hdrfilm", "width": self._pixels, "height": self._pixels, "rfilter": {"type": "box"}}
         film |= {"pixel_format": "luminance", "component_format": "float32"}
         shape = {"type": "perspective", "fov": FOV, "fov_axis": "y", "near_clip": 1.0, "far_clip": 1e4}
         return shape | {"to_world": place, "film": film, "sampler": {"type": "independent"}}
