@@ -29,7 +29,7 @@ def test_orders_of_a_half_space_add_up_to_its_reflectance():
 
 
 def test_walks_come_back_by_the_law_of_sparre_andersen():
-    """Depths of isotropic walks go up and down on a line, where C(2n, n) / 4^n stay on one side [Sparre Andersen 1954].
+    """Depths of isotropic walks go up and down on a line, where C(2n, n) / 4^n stay on one side [Andersen 1954].
 
     So of light whose cosines are uniform as it enters a half-space, twice the difference of two such shares comes back
     after n scatterings, but for what is absorbed, whatever the lengths of the steps.
