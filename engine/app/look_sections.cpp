@@ -78,6 +78,7 @@ void draw_picture(State& state, const Measured& measured) {
   if (slide("Converge to", converge, 0, 10, converge > 0 ? "%.1f%%" : "no target")) {
     state.scene.render.converge = converge < 0.1f ? 0 : static_cast<double>(converge) / 100;
   }
+  choose("Filter", state.scene.render.filter);
   choose("Tone", state.scene.tone.curve);
   slide("White balance", state.scene.tone.white_balance, 2000, 12000, "%.0f K");
   auto& stops = state.scene.tone.exposure_stops;

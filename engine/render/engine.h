@@ -29,6 +29,7 @@
 #include "engine/render/light/lights.h"
 #include "engine/render/picture/picture.h"
 #include "engine/render/picture/picture_buffers.h"
+#include "engine/render/picture/pixel_filter.h"
 #include "engine/render/picture/radiance_probe.h"
 #include "engine/solve/simulation.h"
 
@@ -61,6 +62,7 @@ struct RenderOptions {
   // Of a pixel, which is their mean, in samples_range, by whole frames of four; 0: as many as its edges need, or the
   // blur of the lens.
   std::uint32_t samples = 0;
+  PixelFilter filter = PixelFilter::box;  // of more than four samples
   // Alpha of the GGX distribution of the surface, in roughness_range (engine/optics/material.h); empty: that of the
   // material.
   std::optional<float> roughness{};

@@ -231,7 +231,7 @@ struct Engine::Implementation {
   void draw_frame(const View& from, const Camera& camera, const RenderOptions& render, std::uint32_t index) {
     const std::uint32_t count = frame_count(from, render);
     averaged = count > 1;
-    const FrameOffset offset = frame_offset(index, count);
+    const FrameOffset offset = frame_offset(index, count, render.filter);
     const glm::dvec2 lens = 0.5 * double{from.aperture} * offset.lens;
     const Camera there =
         quadgraph::moved(camera, 2.0 * offset.pixel / glm::dvec2(render.width, render.height), lens, focus);

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, Literal, TypedDict
 
-from quadgraph.api.choices import Method, Model, PathCost, PathSolver, Radiance, Solver, Source, Tone
+from quadgraph.api.choices import Filter, Method, Model, PathCost, PathSolver, Radiance, Solver, Source, Tone
 from quadgraph.api.values import RGB, Vector
 
 
@@ -102,19 +102,20 @@ class Camera(TypedDict, total=False):
 class PictureOptions(TypedDict, total=False):
     """What a picture shows, and how.
 
-    width, height: pixels, 1 to 16384; samples: of a pixel, four at a time, 0 for 16, or 256 with an aperture; converge:
-    the error down to which corrections and samples run on, 0 for none; time_limit: seconds for that, 0 for no limit;
-    roughness: of the surface, GGX alpha, left out, the material's; radiance: how it leaves the surface; show:
-    "picture", or what is inside (docs/window.md, "Views of the inside"); ground: its shadow where the body stands, and
-    its light; surroundings: what environment lights show, behind it; roughness_map: as in scene files; exposure: "auto"
-    or stops; tone: the curve from radiance to a screen; white_balance: kelvin of the light that is shown white, 6504
-    for none changed; background: "studio", "black", "white", "transparent" (PNG only), a grey, three numbers, or
-    {"top": ..., "bottom": ...}, linear.
+    width, height: pixels, 1 to 16384; samples: of a pixel, four at a time, 0 for 16, or 256 with an aperture; filter:
+    how they are weighed around the middle of a pixel; converge: the error down to which corrections and samples run
+    on, 0 for none; time_limit: seconds for that, 0 for no limit; roughness: of the surface, GGX alpha, left out, the
+    material's; radiance: how it leaves the surface; show: "picture", or what is inside (docs/window.md, "Views of the
+    inside"); ground: its shadow where the body stands, and its light; surroundings: what environment lights show,
+    behind it; roughness_map: as in scene files; exposure: "auto" or stops; tone: the curve from radiance to a screen;
+    white_balance: kelvin of the light that is shown white, 6504 for none changed; background: "studio", "black",
+    "white", "transparent" (PNG only), a grey, three numbers, or {"top": ..., "bottom": ...}, linear.
     """
 
     width: int
     height: int
     samples: int
+    filter: Filter
     converge: float
     time_limit: float
     roughness: float

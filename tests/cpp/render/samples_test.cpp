@@ -26,8 +26,8 @@ struct LitCube : CheckedEngine {
     engine.solve();
   }
 
-  Picture picture(std::uint32_t samples, const View& view = slanted) {
-    return engine.render(view, {.width = side, .height = side, .samples = samples});
+  Picture picture(std::uint32_t samples, const View& view = slanted, PixelFilter filter = PixelFilter::box) {
+    return engine.render(view, {.width = side, .height = side, .samples = samples, .filter = filter});
   }
 };
 
@@ -51,7 +51,8 @@ double silhouette_error(const std::vector<float>& alpha, const std::vector<float
 }
 
 // A ball through a lens, ahead of an eye that looks along -z at what is 100 mm away, in frames.
-std::vector<float> ball_through_lens(float away, float radius, double aperture, double focus) {
+std::vector<float> ball_through_lens(float away, float radius, double aperture, double focus,
+                                     PixelFilter filter = PixelFilter::box) {
   constexpr std::uint32_t frames = 64, wide = 200;
   DisplayStage stage(sphere({0, 0, 100 - away}, radius, 3), glm::vec3(1));
   const View view{
@@ -62,7 +63,7 @@ std::vector<float> ball_through_lens(float away, float radius, double aperture, 
   const Camera camera = place_camera(view, bounds, 1);
   PictureMean mean(stage.context);
   for (std::uint32_t i = 0; i < frames; ++i) {
-    const FrameOffset offset = frame_offset(i, frames);
+    const FrameOffset offset = frame_offset(i, frames, filter);
     stage.rasteriser.run({.mesh = stage.mesh,
                           .finest = stage.level,
                           .vertex_exitance = stage.exitance,
@@ -87,6 +88,59 @@ double spread(const std::vector<float>& alpha) {
 }
 
 }  // namespace
+
+TEST_CASE("quantiles of a filter are symmetric, in order, and spread as its variance says") {
+  for (const PixelFilter filter : all_values<PixelFilter>()) {
+    CAPTURE(name_of(filter));
+    constexpr int count = 2000;
+    double square = 0, before = -10;
+    for (int k = 0; k < count; ++k) {
+      const double place = quantile(filter, (k + 0.5) / count);
+      CHECK(place > before);
+      CHECK(place == doctest::Approx(-quantile(filter, 1 - (k + 0.5) / count)).epsilon(1e-9));
+      square += place * place / count;
+      before = place;
+    }
+    CHECK(square == doctest::Approx(variance(filter)).epsilon(1e-3));
+  }
+  CHECK(std::sqrt(variance(PixelFilter::gaussian)) == doctest::Approx(0.5).epsilon(0.02));  // less what is cut off
+  CHECK(variance(PixelFilter::tent) == doctest::Approx(2 * variance(PixelFilter::box)));
+}
+
+TEST_CASE("all samples of a pixel together are spread as its filter says") {
+  for (const PixelFilter filter : all_values<PixelFilter>()) {
+    CAPTURE(name_of(filter));
+    constexpr std::uint32_t frames = 64;
+    glm::dvec2 sum(0), square(0);
+    for (std::uint32_t index = 0; index < frames; ++index) {
+      for (const glm::dvec2 quarter : {glm::dvec2(-0.25, -0.25), {0.25, -0.25}, {-0.25, 0.25}, {0.25, 0.25}}) {
+        const glm::dvec2 place = frame_offset(index, frames, filter).pixel + quarter;
+        sum += place / (4.0 * frames);
+        square += place * place / (4.0 * frames);
+      }
+    }
+    for (const int axis : {0, 1}) {
+      CHECK(std::abs(sum[axis]) < 1e-12);
+      CHECK(square[axis] == doctest::Approx(variance(filter)).epsilon(0.02));
+    }
+  }
+}
+
+TEST_CASE("a wider filter makes edges as much wider, and the body covers as much") {
+  // Along an edge: half of what two places are apart by chance, 1/3 of a pixel by the box and 7/15 by the tent.
+  const auto width = [](const std::vector<float>& alphas) {
+    double sum = 0;
+    for (const float alpha : alphas) sum += double{alpha} * (1 - double{alpha});
+    return sum;
+  };
+  const std::vector<float> box = ball_through_lens(100, 7, 0, 100);
+  const std::vector<float> tent = ball_through_lens(100, 7, 0, 100, PixelFilter::tent);
+  CHECK(total(tent) == doctest::Approx(total(box)).epsilon(1e-3));
+  CHECK(width(tent) / width(box) == doctest::Approx(7.0 / 5).epsilon(0.04));
+  LitCube cube;
+  const Picture sharp = cube.picture(64), soft = cube.picture(64, slanted, PixelFilter::gaussian);
+  CHECK(total(soft.scattered) == doctest::Approx(total(sharp.scattered)).epsilon(2e-3));
+}
 
 TEST_CASE("frames of a picture lie around its pixels and over all of the lens") {
   for (const std::uint32_t count : {1u, 2u, 3u, 4u, 8u, 31u, 64u}) {
