@@ -38,7 +38,7 @@ void assemble_fdm(Workspace& work, const LevelBuffers& level, const BodyBoundari
                                   .optical = level.optical.address(),
                                   .to_phi = op.to_phi.address(),
                                   .face_kinds = level.face_kind.address(),
-                                  .boundaries = boundaries.on_device.address(),
+                                  .boundaries = boundaries.on_device,
                                   .count = op.count,
                                   .tet_count = level.tet_count};
   const std::uint64_t bytes = op.entries * (vec3_bytes + 2 * op.entry_bytes()) +
@@ -55,7 +55,7 @@ void assemble_fv(Workspace& work, const LevelBuffers& level, const BodyBoundarie
                                  .optical = level.optical.address(),
                                  .to_phi = op.to_phi.address(),
                                  .face_kinds = level.face_kind.address(),
-                                 .boundaries = boundaries.on_device.address(),
+                                 .boundaries = boundaries.on_device,
                                  .count = op.count,
                                  .tet_count = level.tet_count,
                                  .least = level.least};
@@ -88,7 +88,7 @@ void assemble_even(Workspace& work, const LevelBuffers& level, const BodyBoundar
                                    .entry_shape = op.entry_shape.address(),
                                    .entry_area = op.entry_area.address(),
                                    .row_shape = op.row_shape.address(),
-                                   .boundaries = boundaries.on_device.address(),
+                                   .boundaries = boundaries.on_device,
                                    .count = op.count,
                                    .area_count = static_cast<std::uint32_t>(op.entry_area.size() / sizeof(float))};
   work.recorder.dispatch(work.passes.of(shader::assemble_even, op.model, op.format), push, op.count, "assembly",
@@ -108,7 +108,7 @@ void assemble_fem(Workspace& work, const LevelBuffers& level, const BodyBoundari
                                      .ring_offset = op.ring_offset.address(),
                                      .ring = op.ring.address(),
                                      .face_kinds = level.face_kind.address(),
-                                     .boundaries = boundaries.on_device.address(),
+                                     .boundaries = boundaries.on_device,
                                      .count = op.edge_count,
                                      .even = even ? 1u : 0u};
   // Every tet is met at its six edges, then at its four corners.
@@ -126,7 +126,7 @@ void assemble_fem(Workspace& work, const LevelBuffers& level, const BodyBoundari
                                   .face_offset = level.face_offset.address(),
                                   .face_incidence = level.face_incidence.address(),
                                   .face_kinds = level.face_kind.address(),
-                                  .boundaries = boundaries.on_device.address(),
+                                  .boundaries = boundaries.on_device,
                                   .count = op.count,
                                   .surface_count = level.surface_vertex_count,
                                   .even = even ? 1u : 0u,
@@ -159,7 +159,7 @@ void assemble_polygrid(Workspace& work, const LevelBuffers& level, Method method
                                        .optical = op.grid_optical.address(),
                                        .volume = op.grid_volume.address(),
                                        .to_phi = op.to_phi.address(),
-                                       .boundaries = boundaries.on_device.address(),
+                                       .boundaries = boundaries.on_device,
                                        .count = op.count,
                                        .surface_count = level.surface_vertex_count,
                                        .published = published(method) ? 1u : 0u};
@@ -180,7 +180,7 @@ void load_fdm(Workspace& work, const LevelBuffers& level, const BodyBoundaries& 
                                        .optical = level.optical.address(),
                                        .face_tets = level.face_tets.address(),
                                        .face_kinds = level.face_kind.address(),
-                                       .boundaries = boundaries.on_device.address(),
+                                       .boundaries = boundaries.on_device,
                                        .q = level.q.address(),
                                        .scale = work.scale.address(),
                                        .side = op.right_hand_side(work.reduction),
@@ -195,7 +195,7 @@ void load_fv(Workspace& work, const LevelBuffers& level, const BodyBoundaries& b
   const gpu::RightHandSideFvPush push{.vertices = level.vertices.address(),
                                       .faces = level.faces.address(),
                                       .face_kinds = level.face_kind.address(),
-                                      .boundaries = boundaries.on_device.address(),
+                                      .boundaries = boundaries.on_device,
                                       .q = level.q.address(),
                                       .scale = work.scale.address(),
                                       .side = op.right_hand_side(work.reduction),
@@ -309,7 +309,7 @@ void record_diffuse_load(Workspace& work, const LevelBuffers& level, Method meth
       return load_fv(work, level, boundaries, op);
     case Discretisation::fem:
     case Discretisation::polygrid:
-      return load_fem(work, level, level.q.address(), boundaries.on_device.address(), op);
+      return load_fem(work, level, level.q.address(), boundaries.on_device, op);
     case Discretisation::none:
       break;
   }

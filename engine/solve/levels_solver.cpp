@@ -174,9 +174,8 @@ void LevelsSolver::approach(std::uint32_t level) {
 
 void LevelsSolver::set_solver(std::uint32_t level) {
   const bool last = level == finest_;
-  LevelTask task{.solver = report_.solver,
-                 .boundaries = boundaries_.on_device.address(),
-                 .max_iterations = options_.max_iterations};
+  LevelTask task{
+      .solver = report_.solver, .boundaries = boundaries_.on_device, .max_iterations = options_.max_iterations};
   task.tolerance = algebraic_wanted();
   task.smoothing = options_.smoothing > 0 ? options_.smoothing : rules_of(report_.solver).smoothing;
   task.start = !last && cycles();

@@ -45,7 +45,7 @@ std::vector<glm::vec3> Perturbation::exitance(const PerturbedSolution& solution,
   work.recorder.fill(op.x, 0);
   const SolverKind kind = possible_solver(solution.operators, solution.key, SolverKind::fmg_pcg).solver;
   const LevelTask task{.solver = kind,
-                       .boundaries = solution.boundaries.on_device.address(),
+                       .boundaries = solution.boundaries.on_device,
                        .tolerance = share_left,
                        .max_iterations = rules_of(kind).cycles ? most_cycles : most_steps,
                        .smoothing = rules_of(kind).smoothing};

@@ -7,7 +7,6 @@
 #include "engine/base/error.h"
 #include "engine/optics/fresnel.h"
 #include "engine/reference/operator.h"
-#include "shaders/solver/solve_shared.h"
 
 namespace quadgraph {
 namespace {
@@ -24,6 +23,18 @@ gpu::Refraction refraction(float eta, std::uint32_t entering) {
 gpu::Boundary single_precision(const Boundary& boundary) {
   return {static_cast<float>(boundary.k11), static_cast<float>(boundary.k12), static_cast<float>(boundary.k22),
           static_cast<float>(boundary.source), static_cast<float>(boundary.reflected)};
+}
+
+template <typename Enum>
+std::size_t value_count() {
+  return all_values<Enum>().size();
+}
+
+// Among all values.
+template <typename Enum>
+std::size_t number_among_all(Enum value) {
+  const std::vector<Enum> values = all_values<Enum>();
+  return static_cast<std::size_t>(std::ranges::find(values, value) - values.begin());
 }
 
 }  // namespace
@@ -48,7 +59,10 @@ std::vector<float> different_indices(std::span<const float> eta) {
 Refractions::Refractions(device::Device& device, std::uint32_t bodies)
     : device_(device),
       eta_(bodies, 1.0f),
-      on_device_(device, bodies * sizeof(gpu::Refraction), device::Place::device, "material/refraction of bodies") {
+      on_device_(device, bodies * sizeof(gpu::Refraction), device::Place::device, "material/refraction of bodies"),
+      boundaries_on_host_(bodies * value_count<Method>() * value_count<Source>() * value_count<Model>()),
+      boundaries_on_device_(device, boundaries_on_host_.size() * sizeof(gpu::Boundary), device::Place::device,
+                            "operator/boundaries of bodies") {
   write();
 }
 
@@ -82,19 +96,26 @@ std::vector<std::uint32_t> Refractions::head(std::uint32_t faces) const {
   return {static_cast<std::uint32_t>(address), static_cast<std::uint32_t>(address >> 32), faces};
 }
 
+std::size_t Refractions::first_of(Method method, Source source, Model model) const {
+  const std::size_t kind =
+      (number_among_all(method) * value_count<Source>() + number_among_all(source)) * value_count<Model>() +
+      number_among_all(model);
+  return eta_.size() * kind;
+}
+
 const BodyBoundaries& Refractions::boundaries(Method method, Source source, Model model) {
   const std::tuple key(method, source, model);
   if (const auto known = boundaries_.find(key); known != boundaries_.end()) return known->second;
-  BodyBoundaries found;
-  std::vector<gpu::Boundary> bodies;
+  const std::size_t first = first_of(method, source, model);
+  BodyBoundaries found{.of_body = {}, .on_device = boundaries_on_device_.address() + first * sizeof(gpu::Boundary)};
   for (const float index : eta_) {
     const auto before = std::ranges::find(eta_, index) - eta_.begin();  // the first body of this index
     const bool known = static_cast<std::size_t>(before) < found.of_body.size();
     found.of_body.push_back(known ? found.of_body[static_cast<std::size_t>(before)]
                                   : boundary_of(method, source, model, double{index}));
-    bodies.push_back(single_precision(found.of_body.back()));
+    boundaries_on_host_[first + found.of_body.size() - 1] = single_precision(found.of_body.back());
   }
-  found.on_device = device::upload<gpu::Boundary>(device_, bodies, "operator/boundaries of bodies");
+  device::write_bytes(device_, boundaries_on_device_, std::as_bytes(std::span(boundaries_on_host_)));
   return boundaries_.emplace(key, std::move(found)).first->second;
 }
 

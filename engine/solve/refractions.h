@@ -10,13 +10,14 @@
 #include "engine/device/memory.h"
 #include "engine/optics/boundary.h"
 #include "shaders/shared/refraction.h"
+#include "shaders/solver/solve_shared.h"
 
 namespace quadgraph {
 
 // What the surfaces do to the fields inside, by body: for the host, and gpu::Boundary on the device.
 struct BodyBoundaries {
   std::vector<Boundary> of_body;
-  device::Buffer on_device;
+  std::uint64_t on_device = 0;  // address
 
   // Sp3Head::bodies: the bits that tell the bodies apart; 0 where all have one boundary.
   std::uint32_t bits() const;
@@ -46,10 +47,15 @@ class Refractions {
 
  private:
   void write();
+  std::size_t first_of(Method method, Source source, Model model) const;
 
   device::Device& device_;
   std::vector<float> eta_;
   device::Buffer on_device_;
+  // By body, of each method, source and model, which keep their places: what a solve takes of memory does not hang on
+  // the solves before it.
+  std::vector<gpu::Boundary> boundaries_on_host_;
+  device::Buffer boundaries_on_device_;
   std::map<std::tuple<Method, Source, Model>, BodyBoundaries> boundaries_;
 };
 

@@ -43,7 +43,7 @@ void record_exitance(Workspace& work, const Solved& solved, const device::Buffer
   const gpu::ExitancePush push{.vertices = level.vertices.address(),
                                .faces = level.faces.address(),
                                .face_kinds = level.face_kind.address(),
-                               .boundaries = solved.boundaries.on_device.address(),
+                               .boundaries = solved.boundaries.on_device,
                                .x = solved.op.x.address(),
                                .to_phi = solved.op.to_phi.address(),
                                .q = level.q.address(),

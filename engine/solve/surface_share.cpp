@@ -11,7 +11,7 @@ void record_surface_share(Workspace& work, const LevelBuffers& level, Method met
   const gpu::SurfaceSharePush push{.vertices = level.vertices.address(),
                                    .faces = level.faces.address(),
                                    .face_kinds = level.face_kind.address(),
-                                   .boundaries = boundaries.on_device.address(),
+                                   .boundaries = boundaries.on_device,
                                    .face_offset = level.face_offset.address(),
                                    .face_incidence = level.face_incidence.address(),
                                    .q = level.q.address(),

@@ -153,7 +153,7 @@ void TransportCorrection::solve(const CorrectionParts& parts, std::uint32_t half
   const SolverKind kind = possible_solver(parts.operators, correction_key, SolverKind::fmg_pcg).solver;
   const bool cycles = rules_of(kind).cycles;
   const LevelTask task{.solver = kind,
-                       .boundaries = parts.boundaries.on_device.address(),
+                       .boundaries = parts.boundaries.on_device,
                        .tolerance = share_left,
                        .max_iterations = cycles ? most_cycles : most_steps,
                        .smoothing = rules_of(kind).smoothing};
@@ -182,7 +182,7 @@ void TransportCorrection::record_change(const CorrectionParts& parts, bool ahead
                                 .face_offset = level.face_offset.address(),
                                 .face_incidence = level.face_incidence.address(),
                                 .share = parts.operators.at(correction_key, 0).surface_share.address(),
-                                .boundaries = parts.boundaries.on_device.address(),
+                                .boundaries = parts.boundaries.on_device,
                                 .scale = work.scale.address(),
                                 .gathered = samples_.gathered().address(),
                                 .change_a = change_[0].address(),
@@ -212,7 +212,7 @@ void TransportCorrection::record_faces(const CorrectionParts& parts) {
                                       .face_tets = level.face_tets.address(),
                                       .optical = level.optical.address(),
                                       .face_kinds = level.face_kind.address(),
-                                      .boundaries = parts.boundaries.on_device.address(),
+                                      .boundaries = parts.boundaries.on_device,
                                       .scale = work.scale.address(),
                                       .gathered = samples_.gathered().address(),
                                       .change_a = change_[0].address(),

@@ -213,7 +213,7 @@ void TransportSamples::record_carried(const TransportParts& parts, const BodyBou
   const LevelBuffers& level = parts.level;
   const gpu::TransportCarryPush push{.faces = level.faces.address(),
                                      .face_kinds = level.face_kind.address(),
-                                     .boundaries = boundaries.on_device.address(),
+                                     .boundaries = boundaries.on_device,
                                      .fluence = fluence_.address(),
                                      .fluence_before = fluence_before_.address(),
                                      .unit = unit_.address(),

@@ -189,7 +189,7 @@ TEST_CASE("a matrix that is not positive definite breaks down by name") {
     device::write_bytes(context, op.state, std::as_bytes(std::span(&state, 1)));
     const char* expected = solver == SolverKind::dpcg ? "not positive definite" : "diverges";
     LevelSolver level_solver(work, operators, key, 0,
-                             {.solver = solver, .boundaries = boundaries.on_device.address(), .max_iterations = 5000});
+                             {.solver = solver, .boundaries = boundaries.on_device, .max_iterations = 5000});
     CHECK_THROWS_WITH_AS(level_solver.run(), doctest::Contains(expected), SolverError);
   }
 }
