@@ -26,16 +26,7 @@ gpu::Boundary single_precision(const Boundary& boundary) {
 }
 
 template <typename Enum>
-std::size_t value_count() {
-  return all_values<Enum>().size();
-}
-
-// Among all values.
-template <typename Enum>
-std::size_t number_among_all(Enum value) {
-  const std::vector<Enum> values = all_values<Enum>();
-  return static_cast<std::size_t>(std::ranges::find(values, value) - values.begin());
-}
+constexpr std::size_t value_count = Names<Enum>::values.size();
 
 }  // namespace
 
@@ -60,7 +51,7 @@ Refractions::Refractions(device::Device& device, std::uint32_t bodies)
     : device_(device),
       eta_(bodies, 1.0f),
       on_device_(device, bodies * sizeof(gpu::Refraction), device::Place::device, "material/refraction of bodies"),
-      boundaries_on_host_(bodies * value_count<Method>() * value_count<Source>() * value_count<Model>()),
+      boundaries_on_host_(bodies * value_count<Method> * value_count<Source> * value_count<Model>),
       boundaries_on_device_(device, boundaries_on_host_.size() * sizeof(gpu::Boundary), device::Place::device,
                             "operator/boundaries of bodies") {
   write();
@@ -97,10 +88,9 @@ std::vector<std::uint32_t> Refractions::head(std::uint32_t faces) const {
 }
 
 std::size_t Refractions::first_of(Method method, Source source, Model model) const {
-  const std::size_t kind =
-      (number_among_all(method) * value_count<Source>() + number_among_all(source)) * value_count<Model>() +
-      number_among_all(model);
-  return eta_.size() * kind;
+  const std::size_t by_source =
+      static_cast<std::size_t>(method) * value_count<Source> + static_cast<std::size_t>(source);
+  return eta_.size() * (by_source * value_count<Model> + static_cast<std::size_t>(model));
 }
 
 const BodyBoundaries& Refractions::boundaries(Method method, Source source, Model model) {

@@ -6,9 +6,9 @@
 
 layout(local_size_x = WORKGROUP_SIZE) in;
 
-// Weight, row_sum and diagonal where the coefficients are the same everywhere, and with them the index of refraction, one
-// invocation per vertex. What entries and rows are made of is that of row_structure.h, FemShape; entries from `area_count` on have no
-// area.
+// Weight, row_sum and diagonal where the coefficients are the same everywhere, and with them the index of refraction,
+// one invocation per vertex. What entries and rows are made of is that of row_structure.h, FemShape; entries from
+// `area_count` on have no area.
 struct AssembleEvenPush {
   RowsRef rows;
   Opticals optical;  // one

@@ -48,7 +48,8 @@ void main() {
     change_a += push.change_a.at[ids[k]] / 3.0;
     change_b += push.change_b.at[ids[k]] / 3.0;
   }
-  vec3 unit = push.scale.at[0].scale, gain = push.boundaries.at[body_behind(push.face_kinds, f)].k11 * push.books.at[0].gain;
+  float k11 = push.boundaries.at[body_behind(push.face_kinds, f)].k11;
+  vec3 unit = push.scale.at[0].scale, gain = k11 * push.books.at[0].gain;
   vec3 a = unit * (push.gathered.at[f] + gain * change_a);
   vec3 b = unit * (push.gathered.at[push.count + f] + gain * change_b);
   push.halves.at[f] = a;

@@ -4,14 +4,7 @@
 #include <cmath>
 #include <limits>
 
-// What shaders are compiled with is not written for the warnings that hold elsewhere.
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wignored-attributes"
-#ifndef QG_LEVEL
-#define QG_LEVEL tested
-#endif
-#include "engine/cpu/glsl.h"
-#pragma GCC diagnostic pop
+#include "tests/cpp/fixtures/shader_functions.h"
 
 using namespace quadgraph::cpu::tested;
 

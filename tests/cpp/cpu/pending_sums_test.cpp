@@ -1,19 +1,10 @@
 // Sums that a thread keeps back: whole once they are written, also where more are kept than there are places.
-#include "engine/cpu/pending_sums.h"
-
 #include <doctest/doctest.h>
 
 #include <thread>
 #include <vector>
 
-// What shaders are compiled with is not written for the warnings that hold elsewhere.
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wignored-attributes"
-#ifndef QG_LEVEL
-#define QG_LEVEL tested
-#endif
-#include "engine/cpu/pending_add.h"
-#pragma GCC diagnostic pop
+#include "tests/cpp/fixtures/shader_functions.h"
 
 using namespace quadgraph;
 
