@@ -12,21 +12,25 @@ namespace quadgraph {
 namespace {
 
 constexpr float reach = 1.0f / 15, stride = 0.3f;  // of the body's radius; of the brush's
-constexpr float least_sine = 0.1f;                 // of the angle between a surface's normal and what is upright on it
 
-// Whether a stroke or a stamp goes over a place.
-bool reaches(const Edit& edit, const glm::vec3& at) {
-  if (edit.placement) return glm::distance(edit.placement->centre, at) <= 0.25f * edit.placement->size.z + edit.radius;
-  const auto& stroke = edit.stroke;
+bool reaches(const std::optional<Placement>& placement, const std::vector<glm::vec3>& stroke, float radius,
+             const glm::vec3& at) {
+  if (placement) return glm::distance(placement->centre, at) <= 0.25f * placement->size.z + radius;
   for (std::size_t i = 0; i < stroke.size(); ++i) {
-    if (gpu::segment_distance(at, stroke[i > 0 ? i - 1 : 0], stroke[i]) <= edit.radius) return true;
+    if (gpu::segment_distance(at, stroke[i > 0 ? i - 1 : 0], stroke[i]) <= radius) return true;
   }
   return false;
 }
 
+// Whether a stroke or a stamp goes over a place, or its mirror image does.
+bool reaches(const Edit& edit, const glm::vec3& at) {
+  if (reaches(edit.placement, edit.stroke, edit.radius, at)) return true;
+  return edit.mirrored && reaches(edit.mirrored->placement, edit.mirrored->stroke, edit.radius, at);
+}
+
 }  // namespace
 
-Touch touched(const Picked& picked, const Camera& camera) {
+TouchPlace touched(const Picked& picked, const Camera& camera) {
   const glm::vec3 outward = glm::normalize(picked.to_rest * picked.normal);
   const auto along = [&](const glm::vec3& direction) {
     const glm::vec3 there = picked.to_rest * (direction - glm::dot(direction, picked.normal) * picked.normal);
@@ -65,48 +69,62 @@ Edit Brush::stroke_on(const Scene& scene) const {
   return made;
 }
 
-Edit Brush::stamp(const Edit& how, const Touch& touch) const {
-  const ImagePyramid& shape = how.image ? *how.image : *how.mask;
+// The box of a stamp.
+Placement Brush::placement_at(const TouchPlace& place) const {
+  const ImagePyramid& shape = edit.image ? *edit.image : *edit.mask;
   const float longest = static_cast<float>(std::max(shape.columns, shape.rows));
-  const float width = 2 * how.radius * static_cast<float>(shape.columns) / longest;
-  const float height = 2 * how.radius * static_cast<float>(shape.rows) / longest;
-  Edit stamped = how;
-  stamped.radius = 0;
-  stamped.softness = std::min(how.softness, 0.25f * std::min(width, height));
-  stamped.placement = Placement{touch.at, touch.inward, touch.upright, {width, height, 2 * how.radius}};
-  return stamped;
+  const float width = 2 * edit.radius * static_cast<float>(shape.columns) / longest;
+  const float height = 2 * edit.radius * static_cast<float>(shape.rows) / longest;
+  return {place.at, place.inward, place.upright, {width, height, 2 * edit.radius}};
 }
 
-void Brush::begin(Scene& scene, const Touch& touch) const {
-  const Edit made = stroke_on(scene);
-  if (stamps()) return scene.edits.push_back(stamp(made, touch));
-  scene.edits.push_back(made);
-  scene.edits.back().stroke = {touch.at};
-}
-
-void Brush::lead(Scene& scene, const Touch& touch) const {
+Edit Brush::stroke_at(const Scene& scene, const Touch& touch) const {
+  Edit made = stroke_on(scene);
+  if (touch.mirrored) made.mirrored.emplace();
   if (stamps()) {
-    scene.edits.back() = stamp(stroke_on(scene), touch);
-    return;
+    made.radius = 0;
+    made.placement = placement_at(touch.here);
+    made.softness = std::min(made.softness, 0.25f * std::min(made.placement->size.x, made.placement->size.y));
+    if (touch.mirrored) made.mirrored->placement = placement_at(*touch.mirrored);
+  } else {
+    made.stroke = {touch.here.at};
+    if (touch.mirrored) made.mirrored->stroke = {touch.mirrored->at};
   }
-  std::vector<glm::vec3>& stroke = scene.edits.back().stroke;
-  if (glm::distance(stroke.back(), touch.at) > stride * edit.radius) stroke.push_back(touch.at);
+  return made;
 }
 
-void Brush::erase(Scene& scene, const Touch& touch) {
+void Brush::begin(Scene& scene, std::size_t layer, const Touch& touch) const {
+  scene.layers.at(layer).edits.push_back(stroke_at(scene, touch));
+}
+
+void Brush::lead(Scene& scene, std::size_t layer, const Touch& touch) const {
+  auto& edits = scene.layers.at(layer).edits;
+  if (edits.empty()) return;
+  Edit& last = edits.back();
+  if (stamps()) {
+    last = stroke_at(scene, touch);
+  } else if (glm::distance(last.stroke.back(), touch.here.at) > stride * edit.radius) {
+    last.stroke.push_back(touch.here.at);
+    if (last.mirrored) last.mirrored->stroke.push_back(touch.mirrored.value_or(touch.here).at);
+  }
+}
+
+void Brush::erase(EditLayer& layer, const Touch& touch) {
+  auto& edits = layer.edits;
   const auto last =
-      std::find_if(scene.edits.rbegin(), scene.edits.rend(), [&](const Edit& edit) { return reaches(edit, touch.at); });
-  if (last != scene.edits.rend()) scene.edits.erase(std::next(last).base());
+      std::find_if(edits.rbegin(), edits.rend(), [&](const Edit& edit) { return reaches(edit, touch.here.at); });
+  if (last != edits.rend()) edits.erase(std::next(last).base());
 }
 
 void Brush::pick(const Scene& scene, const Touch& touch) {
-  const auto last = std::find_if(scene.edits.rbegin(), scene.edits.rend(), [&](const Edit& each) {
+  const std::vector<Edit> seen = applied_edits(scene.layers);
+  const auto last = std::find_if(seen.rbegin(), seen.rend(), [&](const Edit& each) {
     const bool whole = each.operation == Edit::Operation::set && each.sigma_a && each.sigma_s_prime;
-    return whole && reaches(each, touch.at);
+    return whole && reaches(each, touch.here.at);
   });
   const auto& own = look_of(scene.material);
   if (own) look = *own;
-  if (last == scene.edits.rend()) return;
+  if (last == seen.rend()) return;
   gpu::Material painted{};
   painted.sigma_s_prime = *last->sigma_s_prime;
   painted.sigma_a = *last->sigma_a;

@@ -3,6 +3,7 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include "engine/app/layer_section.h"
 #include "engine/app/modes.h"
 #include "engine/app/panel_widgets.h"
 #include "engine/render/light/image_file.h"
@@ -65,6 +66,12 @@ void draw_coefficients(State& state, const Sphere& bounds) {
   draw_coefficient("Scattering", brush.edit.sigma_s_prime, brush.edit.operation);
 }
 
+void draw_mirror(State& state) {
+  const auto names = mirror_names(state.front, state.scene.view.up);
+  auto chosen = static_cast<std::size_t>(state.brush.mirror);
+  if (choose("Mirror", chosen, {names.begin(), names.end()})) state.brush.mirror = static_cast<Mirror>(chosen);
+}
+
 }  // namespace
 
 void draw_edits(State& state, const Sphere& bounds) {
@@ -78,7 +85,8 @@ void draw_edits(State& state, const Sphere& bounds) {
   slide("Falloff", brush.edit.softness, 0, brush.edit.radius, "%.1f mm");
   draw_image(state, "Mask", brush.edit.mask);
   if (state.lab) draw_coefficients(state, bounds);
-  tell("Strokes", formatted("%zu", state.scene.edits.size()));
+  draw_mirror(state);
+  draw_layers(state);
 }
 
 }  // namespace quadgraph

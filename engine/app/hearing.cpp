@@ -2,6 +2,7 @@
 // is being made is not the one that is wanted any more, that work ends.
 #include <utility>
 
+#include "engine/app/layers.h"
 #include "engine/app/modes.h"
 #include "engine/app/viewer.h"
 
@@ -31,10 +32,14 @@ std::vector<Event> Viewer::take_events() {
 
 void Viewer::fulfil_wishes() {
   if (state_.full_screen) window_.toggle_full_screen();
-  if (state_.undo || state_.redo) history_.note(state_.scene);
+  if (state_.undo || state_.redo) {
+    history_.note(state_.scene);
+    dragging_ = painting_ = false;  // the stroke that is being led may be gone
+  }
   if (state_.undo) state_.scene = history_.undo(state_.scene);
   if (state_.redo) state_.scene = history_.redo(state_.scene);
   if (state_.save || state_.save_first) save_scene();
+  keep_active(state_.scene, state_.layer);
   keep_method(state_);
   leave_or_ask();
   state_.full_screen = state_.save = state_.undo = state_.redo = false;

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
+#include "engine/app/layers.h"
 #include "engine/app/viewer.h"
 #include "engine/scene/gestures.h"
 
@@ -14,6 +15,25 @@ namespace {
 
 constexpr int ring_points = 48;
 constexpr float degrees_per_height = 180.0f;  // of a drag over the height of the picture
+
+// In clip coordinates.
+std::vector<glm::vec2> ring_around(const Picked& middle, float radius, const Camera& camera) {
+  const glm::vec3 side = std::abs(middle.normal.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
+  const glm::vec3 u = glm::normalize(glm::cross(middle.normal, side)), v = glm::cross(middle.normal, u);
+  std::vector<glm::vec2> ring;
+  for (int i = 0; i < ring_points; ++i) {
+    const float angle = glm::radians(360.0f * static_cast<float>(i) / ring_points);
+    const glm::vec4 clip = camera.clip(middle.position + radius * (std::cos(angle) * u + std::sin(angle) * v));
+    ring.emplace_back(clip.x / clip.w, clip.y / clip.w);
+  }
+  return ring;
+}
+
+// Whether a place of the surface looks towards the eye.
+bool faces(const Picked& place, const Camera& camera) {
+  const glm::vec3 to_eye = camera.parallel ? glm::vec3(camera.backward) : glm::vec3(camera.eye) - place.position;
+  return glm::dot(place.normal, to_eye) > 0;
+}
 
 }  // namespace
 
@@ -42,7 +62,7 @@ void Viewer::begin_or_end_drag(const ButtonEvent& event) {
   const bool plain = event.button == GLFW_MOUSE_BUTTON_LEFT && event.mods == 0;
   const auto touch = dragging_ && plain && state_.brush.on ? pointed_at() : std::nullopt;
   painting_ = touch.has_value();
-  if (touch) touch_down(*touch);
+  if (touch && !touch_down(*touch)) dragging_ = painting_ = false;
   Knife& knife = state_.knife;
   if (!dragging_ && knife.cuts()) {
     const CommandContext context = command_context();
@@ -53,12 +73,27 @@ void Viewer::begin_or_end_drag(const ButtonEvent& event) {
   knife.to.reset();
 }
 
-void Viewer::touch_down(const Touch& touch) {
+// Whether the drag goes on with what begins here.
+bool Viewer::touch_down(const Touch& touch) {
   Brush& brush = state_.brush;
-  if (brush.tool == BrushTool::paint) return brush.begin(state_.scene, touch);
-  if (brush.tool == BrushTool::erase) return Brush::erase(state_.scene, touch);
-  brush.pick(state_.scene, touch);
-  brush.tool = BrushTool::paint;
+  if (brush.tool == BrushTool::pick) {
+    brush.pick(state_.scene, touch);
+    brush.tool = BrushTool::paint;
+    return false;
+  }
+  if (state_.scene.layers.empty()) add_layer(state_.scene, state_.layer);
+  EditLayer& layer = state_.scene.layers[state_.layer];
+  if (!layer.visible) {
+    state_.say("'" + layer.name + "' is hidden: show it by its eye, or choose another layer, to paint or erase", true);
+    return false;
+  }
+  if (state_.refused) state_.say("");
+  if (brush.tool == BrushTool::paint) {
+    brush.begin(state_.scene, state_.layer, touch);
+  } else {
+    Brush::erase(layer, touch);
+  }
+  return true;
 }
 
 void Viewer::handle_key(const KeyEvent& event) {
@@ -95,9 +130,9 @@ void Viewer::handle_motion(const MotionEvent& event) {
   if (!dragging_) return;
   if (painting_) {
     const auto touch = pointed_at();
-    if (!touch) return;
-    if (state_.brush.tool == BrushTool::paint) state_.brush.lead(state_.scene, *touch);
-    if (state_.brush.tool == BrushTool::erase) Brush::erase(state_.scene, *touch);
+    if (!touch || state_.layer >= state_.scene.layers.size()) return;
+    if (state_.brush.tool == BrushTool::paint) state_.brush.lead(state_.scene, state_.layer, *touch);
+    if (state_.brush.tool == BrushTool::erase) Brush::erase(state_.scene.layers[state_.layer], *touch);
     return;
   }
   if (state_.knife.from) {
@@ -127,22 +162,24 @@ Camera Viewer::seen_from() const {
   return place_camera(state_.scene.view, context.bounds, context.aspect);
 }
 
-// The brush's edge on the body around the pointer, clip coordinates; empty where it is not on the body.
-std::vector<glm::vec2> Viewer::brush_ring() const {
+// The brush's edge on the body around the pointer, and around the place on the other side where it paints both and that
+// place looks towards the eye; clip coordinates.
+std::vector<std::vector<glm::vec2>> Viewer::brush_rings() const {
   if (!state_.brush.on || interface_.has_pointer()) return {};
   const Camera camera = seen_from();
   const auto found = picker_.pick(camera, pointer());
   if (!found) return {};
-  const glm::vec3 side = std::abs(found->normal.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
-  const glm::vec3 u = glm::normalize(glm::cross(found->normal, side)), v = glm::cross(found->normal, u);
-  std::vector<glm::vec2> ring;
-  for (int i = 0; i < ring_points; ++i) {
-    const float angle = glm::radians(360.0f * static_cast<float>(i) / ring_points);
-    const glm::vec3 point = found->position + state_.brush.edit.radius * (std::cos(angle) * u + std::sin(angle) * v);
-    const glm::vec4 clip = camera.clip(point);
-    ring.emplace_back(clip.x / clip.w, clip.y / clip.w);
-  }
-  return ring;
+  std::vector<std::vector<glm::vec2>> rings;
+  rings.push_back(ring_around(*found, state_.brush.edit.radius, camera));
+  const auto other = other_side(*found);
+  if (other && faces(*other, camera)) rings.push_back(ring_around(*other, state_.brush.edit.radius, camera));
+  return rings;
+}
+
+// The place on the other side of the body, where the brush paints both.
+std::optional<Picked> Viewer::other_side(const Picked& found) const {
+  if (state_.brush.mirror == Mirror::off) return std::nullopt;
+  return picker_.nearest_to(mirrored(found.at_rest, state_.brush.mirror, picker_.middle()));
 }
 
 // Where the pointer meets the body.
@@ -150,7 +187,10 @@ std::optional<Touch> Viewer::pointed_at() const {
   const Camera camera = seen_from();
   const auto found = picker_.pick(camera, pointer());
   if (!found) return std::nullopt;
-  return touched(*found, camera);
+  Touch touch{touched(*found, camera)};
+  const auto other = other_side(*found);
+  if (other) touch.mirrored = mirrored(touch.here, state_.brush.mirror, *other);
+  return touch;
 }
 
 }  // namespace quadgraph

@@ -7,6 +7,7 @@
 #include <csignal>
 
 #include "engine/app/environment_section.h"
+#include "engine/app/layers.h"
 #include "engine/app/panel_widgets.h"
 #include "engine/app/viewer.h"
 #include "engine/base/error.h"
@@ -37,7 +38,7 @@ Scene opened(const std::filesystem::path& file, const Scene& before) {
   if (suffix_of(file) == ".json") return SceneFile::load(file).at(0);
   Scene scene = before;
   scene.body = file;
-  scene.edits.clear();
+  scene.layers.clear();
   scene.deformation.clear();
   scene.cuts.clear();
   scene.render.show = {};
@@ -114,6 +115,8 @@ void Viewer::show_opened(const Scene& scene) {
   state_.preview.clear();
   state_.uncut.reset();
   state_.light = state_.cut = 0;
+  state_.layer = state_.scene.layers.size();  // the topmost
+  keep_active(state_.scene, state_.layer);
   state_.brush = Brush::for_body(engine().bounds().radius);
   take_up_body();
   saving_.stem.replace_filename(scene.body.stem());

@@ -132,7 +132,6 @@ void draw_question(State& state, float unit) {
 }
 
 void draw_ring(const std::vector<glm::vec2>& ring, const glm::vec3& linear, float left, float unit) {
-  if (ring.empty()) return;
   std::vector<ImVec2> places;
   for (const glm::vec2& clip : ring) places.push_back(place_of(clip, left));
   const ImVec4 colour(srgb_encode(linear.x), srgb_encode(linear.y), srgb_encode(linear.z), 1);

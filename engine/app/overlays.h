@@ -25,7 +25,7 @@ void draw_message(const State& state, float left, float unit, float above);
 // Whether to save before the window closes, in the middle.
 void draw_question(State& state, float unit);
 
-// The edge of the brush, clip coordinates, around a spot of its colour; nothing where there is none.
+// The edge of the brush, clip coordinates, around a spot of its colour.
 void draw_ring(const std::vector<glm::vec2>& ring, const glm::vec3& linear, float left, float unit);
 
 // The way of the knife over the picture, which begins at `left`.

@@ -15,15 +15,6 @@
 namespace quadgraph {
 namespace {
 
-// Beside the one before, where there is one.
-bool button(const char* label, bool enabled = true, bool beside = true) {
-  if (beside) ImGui::SameLine();
-  ImGui::BeginDisabled(!enabled);
-  const bool pressed = ImGui::Button(label);
-  ImGui::EndDisabled();
-  return pressed;
-}
-
 // What is told of the picture in a line.
 std::string state_text(const Measured& measured) {
   if (measured.frame_ms == 0) return "the first picture is being made";

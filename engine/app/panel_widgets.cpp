@@ -46,6 +46,14 @@ bool colour_button(const char* label, glm::vec3& linear) {
   return true;
 }
 
+bool button(const char* label, bool enabled, bool beside) {
+  if (beside) ImGui::SameLine();
+  ImGui::BeginDisabled(!enabled);
+  const bool pressed = ImGui::Button(label);
+  ImGui::EndDisabled();
+  return pressed;
+}
+
 void tell(const char* name, const std::string& value) {
   ImGui::TextDisabled("%s", name);
   ImGui::SameLine(0.26f * ImGui::GetContentRegionMax().x);

@@ -41,6 +41,9 @@ bool slide(const char* label, float& value, const Range& range, const char* form
 // A button that shows a linear colour and opens a chooser of it; whether another one was chosen.
 bool colour_button(const char* label, glm::vec3& linear);
 
+// A button, beside what was drawn before; whether it was pressed.
+bool button(const char* label, bool enabled = true, bool beside = true);
+
 // A dim name and a value after it.
 void tell(const char* name, const std::string& value);
 

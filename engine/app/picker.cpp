@@ -1,5 +1,7 @@
 #include "engine/app/picker.h"
 
+#include "engine/deform/deformer.h"
+
 namespace quadgraph {
 
 void Picker::follow(Stage& stage) {
@@ -11,6 +13,17 @@ void Picker::follow(Stage& stage) {
 std::optional<Picked> Picker::pick(const Camera& camera, const glm::vec2& at) const {
   if (graph_ == nullptr) return std::nullopt;
   return quadgraph::pick(graph_->display(), *vertices_, camera, at, tools_);
+}
+
+std::optional<Picked> Picker::nearest_to(const glm::vec3& at_rest) const {
+  if (graph_ == nullptr) return std::nullopt;
+  return quadgraph::nearest_to(graph_->display(), *vertices_, at_rest);
+}
+
+glm::vec3 Picker::middle() const {
+  if (graph_ == nullptr) return glm::vec3(0);
+  const RestBox box = rest_box(graph_->display().vertices);
+  return glm::vec3(0.5 * (box.low + box.high));
 }
 
 }  // namespace quadgraph

@@ -18,6 +18,12 @@ class Picker {
   // As the function pick, of what was followed last; empty before.
   std::optional<Picked> pick(const Camera& camera, const glm::vec2& at) const;
 
+  // As the function nearest_to, of what was followed last.
+  std::optional<Picked> nearest_to(const glm::vec3& at_rest) const;
+
+  // mm, the middle of the body's box at rest.
+  glm::vec3 middle() const;
+
  private:
   const QuadGraph* graph_ = nullptr;
   std::shared_ptr<const std::vector<glm::vec3>> vertices_;  // mm, where they are now

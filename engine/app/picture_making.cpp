@@ -69,6 +69,9 @@ bool Viewer::must_solve() const {
   lit.view = making_->scene.view;
   lit.render = making_->scene.render;
   lit.tone = making_->scene.tone;
+  if (lit.layers != making_->scene.layers && applied_edits(lit.layers) == applied_edits(making_->scene.layers)) {
+    lit.layers = making_->scene.layers;  // of another name, or hidden
+  }
   return lit != making_->scene;
 }
 

@@ -55,6 +55,7 @@ struct State {
   float front = 0;                  // of the body, degrees
   std::size_t light = 0;            // the selected one
   Brush brush;
+  std::size_t layer = 0;  // the active one, which is painted
   Knife knife;
   std::optional<Uncut> uncut;  // how it was shown before it was cut, until it is whole again
   std::size_t cut = 0;         // the selected one

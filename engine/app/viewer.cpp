@@ -118,7 +118,7 @@ void Viewer::build_widgets(const std::vector<Event>& events) {
   draw_message(state_, left, interface_.unit(), taken);
   draw_preview(state_.preview, left, interface_.unit());
   if (!state_.compares()) draw_convergence(measured_.convergence, left, interface_.unit());
-  draw_ring(brush_ring(), state_.brush.look.colour, left, interface_.unit());
+  for (const auto& ring : brush_rings()) draw_ring(ring, state_.brush.look.colour, left, interface_.unit());
   draw_knife(state_.knife, left, interface_.unit());
   if (state_.compares()) draw_convergence("Before the last change", left, interface_.unit());
   if (state_.asks) draw_question(state_, interface_.unit());

@@ -73,8 +73,9 @@ class Viewer {
   glm::vec2 pointer() const;
   std::optional<Touch> pointed_at() const;
   Camera seen_from() const;
-  std::vector<glm::vec2> brush_ring() const;
-  void touch_down(const Touch& touch);
+  std::vector<std::vector<glm::vec2>> brush_rings() const;
+  std::optional<Picked> other_side(const Picked& found) const;
+  bool touch_down(const Touch& touch);
   void listen();
   std::vector<Event> take_events();
   void fulfil_wishes();

@@ -17,6 +17,12 @@ void check(bool fits, const char* field, double found, const char* allowed) {
   if (!fits) throw InputError(std::string(field) + ": found " + std::to_string(found) + ", allowed is " + allowed);
 }
 
+void check_points(std::span<const glm::vec3> stroke, const char* field) {
+  for (const glm::vec3& p : stroke) {
+    for (int c = 0; c < 3; ++c) check(std::isfinite(p[c]), field, static_cast<double>(p[c]), "finite numbers (mm)");
+  }
+}
+
 void check_by(const std::optional<glm::vec3>& by, const char* field, Edit::Operation operation) {
   for (int c = 0; by && c < 3; ++c) {
     const double value = static_cast<double>((*by)[c]), most = static_cast<double>(gpu::COEFFICIENT_MAX);
@@ -33,7 +39,27 @@ gpu::ImageLevels put(const std::shared_ptr<const ImagePyramid>& image, std::vect
   return {first, image->columns, image->rows, image->levels};
 }
 
-gpu::MaterialEdit as_gpu(const Edit& edit, std::size_t first_point) {
+// Appends the points of a stroke to `points`.
+gpu::EditPlace put(std::span<const glm::vec3> stroke, float reach, std::vector<glm::vec3>& points) {
+  gpu::EditPlace place{};
+  place.first_point = static_cast<gpu::uint>(points.size());
+  place.point_count = static_cast<gpu::uint>(stroke.size());
+  place.low = glm::vec3(everywhere);
+  place.high = glm::vec3(-everywhere);
+  for (const glm::vec3& p : stroke) {
+    place.low = glm::min(place.low, p - glm::vec3(reach));
+    place.high = glm::max(place.high, p + glm::vec3(reach));
+  }
+  points.insert(points.end(), stroke.begin(), stroke.end());
+  return place;
+}
+
+void put(const std::optional<Placement>& placement, gpu::EditPlace& place) {
+  place.placed = placement ? 1u : 0u;
+  if (placement) place.box = image_box(*placement);
+}
+
+gpu::MaterialEdit as_gpu(const Edit& edit, std::vector<glm::vec3>& points) {
   gpu::MaterialEdit e{};
   e.sigma_s_prime = edit.sigma_s_prime.value_or(glm::vec3(0));
   e.sigma_a = edit.sigma_a.value_or(glm::vec3(0));
@@ -41,41 +67,59 @@ gpu::MaterialEdit as_gpu(const Edit& edit, std::size_t first_point) {
   e.depth_to = edit.depth_to;
   e.radius = edit.radius;
   e.softness = edit.softness;
+  e.opacity = edit.opacity;
+  e.joins = edit.joins ? 1u : 0u;
   e.operation = static_cast<gpu::uint>(edit.operation);
   e.coefficients = (edit.sigma_s_prime ? gpu::EDIT_SCATTERING : 0u) | (edit.sigma_a ? gpu::EDIT_ABSORPTION : 0u);
-  e.first_point = static_cast<gpu::uint>(first_point);
-  e.point_count = static_cast<gpu::uint>(edit.stroke.size());
-  e.low = glm::vec3(everywhere);
-  e.high = glm::vec3(-everywhere);
-  for (const glm::vec3& p : edit.stroke) {
-    e.low = glm::min(e.low, p - glm::vec3(edit.radius + edit.softness));
-    e.high = glm::max(e.high, p + glm::vec3(edit.radius + edit.softness));
-  }
-  e.placed = edit.placement ? 1u : 0u;
-  if (edit.placement) e.box = image_box(*edit.placement);
+  e.place = put(edit.stroke, edit.radius + edit.softness, points);
+  put(edit.placement, e.place);
+  e.mirrored = edit.mirrored ? 1u : 0u;
+  if (!edit.mirrored) return e;
+  e.mirror = put(edit.mirrored->stroke, edit.radius + edit.softness, points);
+  put(edit.mirrored->placement, e.mirror);
+  e.mirror.box.right = -e.mirror.box.right;
   return e;
 }
 
-// What an edit does at a place in its box: the share of it that arrives there, and the factor of its image.
-struct Arriving {
-  glm::vec3 factor{1};
-  float weight = 1;
-};
+// The mirror image of an edit is of the same kind as the edit.
+void check_mirror(const Edit& edit, const EditMirror& mirror) {
+  if (edit.stroke.empty() && !edit.placement)
+    throw InputError("mirrored: found, an edit everywhere has no mirror image");
+  check(mirror.stroke.size() == edit.stroke.size(), "mirrored: stroke", static_cast<double>(mirror.stroke.size()),
+        ("as many points as the stroke itself has, " + std::to_string(edit.stroke.size())).c_str());
+  check_points(mirror.stroke, "mirrored: stroke");
+  if (mirror.placement.has_value() != edit.placement.has_value()) {
+    throw InputError(std::string("mirrored: placement: found ") + (mirror.placement ? "one" : "none") +
+                     ", allowed is one where the edit itself has one, and none else");
+  }
+  if (!mirror.placement) return;
+  try {
+    check_placement(*mirror.placement);
+  } catch (const InputError& error) {
+    throw InputError(std::string("mirrored: placement: ") + error.what());
+  }
+}
 
-Arriving arriving(const gpu::MaterialEdit& e, std::span<const glm::vec3> texels, const glm::vec3& position,
-                  float spacing) {
-  if (e.placed == 0) return {};
-  const glm::vec3 place = gpu::in_box(e.box, position);
+gpu::EditReach reach_at(const EditArrays& all, const gpu::MaterialEdit& e, const gpu::EditPlace& where,
+                        const glm::vec3& position, float depth, float spacing) {
+  float distance = everywhere;
+  for (std::uint32_t k = 0; k < where.point_count; ++k) {
+    const glm::vec3 &a = all.points[where.first_point + (k > 0 ? k - 1 : 0)], &b = all.points[where.first_point + k];
+    distance = std::min(distance, gpu::segment_distance(position, a, b));
+  }
+  gpu::EditReach reach{glm::vec3(1), gpu::edit_weight(e, where, distance, depth)};
+  if (where.placed == 0) return reach;
+  const glm::vec3 place = gpu::in_box(where.box, position);
   const auto sampled = [&](const gpu::ImageLevels& image) {
     const gpu::ImageTap tap =
-        gpu::image_tap(image, gpu::in_picture(e.box, place), gpu::texels_across(e.box, image, spacing));
-    return gpu::mixed(tap, texels[tap.upper_left], texels[tap.upper_right], texels[tap.lower_left],
-                      texels[tap.lower_right]);
+        gpu::image_tap(image, gpu::in_picture(where.box, place), gpu::texels_across(where.box, image, spacing));
+    return gpu::mixed(tap, all.texels[tap.upper_left], all.texels[tap.upper_right], all.texels[tap.lower_left],
+                      all.texels[tap.lower_right]);
   };
-  Arriving found{glm::vec3(1), gpu::box_weight(e, place)};
-  if (e.image.levels > 0) found.factor = sampled(e.image);
-  if (e.mask.levels > 0) found.weight *= std::min(gpu::luminance(sampled(e.mask)), 1.0f);
-  return found;
+  reach.weight *= gpu::box_weight(where.box, place, e.softness);
+  if (e.image.levels > 0) reach.factor = sampled(e.image);
+  if (e.mask.levels > 0) reach.weight *= std::min(gpu::luminance(sampled(e.mask)), 1.0f);
+  return reach;
 }
 
 }  // namespace
@@ -112,37 +156,38 @@ void check_edit(const Edit& edit) {
   if (!edit.sigma_s_prime && !edit.sigma_a) throw InputError("sigma_s_prime, sigma_a: found neither, one is required");
   check_by(edit.sigma_s_prime, "sigma_s_prime", edit.operation);
   check_by(edit.sigma_a, "sigma_a", edit.operation);
-  for (const glm::vec3& p : edit.stroke) {
-    for (int c = 0; c < 3; ++c) check(std::isfinite(p[c]), "stroke", static_cast<double>(p[c]), "finite numbers (mm)");
-  }
+  check_points(edit.stroke, "stroke");
   const bool reaches = std::isfinite(edit.radius) && (edit.stroke.empty() ? edit.radius == 0 : edit.radius > 0);
   check(reaches, "radius", static_cast<double>(edit.radius), "more than 0 (mm) with a stroke, and none without");
   check(edit.depth_from >= 0, "depth", static_cast<double>(edit.depth_from), "0 (mm) or more");
   check(edit.depth_to > edit.depth_from, "depth", static_cast<double>(edit.depth_to), "more than where it begins (mm)");
   check(edit.softness >= 0 && std::isfinite(edit.softness), "softness", static_cast<double>(edit.softness),
         "0 (mm) or more");
+  check(edit.opacity >= 0 && edit.opacity <= 1, "opacity", static_cast<double>(edit.opacity), "0 to 1");
+  if (edit.mirrored) check_mirror(edit, *edit.mirrored);
   if (edit.placement) return check_placement(*edit.placement);
   if (edit.image || edit.mask) throw InputError("placement: found none, an image or a mask needs one");
 }
 
 EditArrays::EditArrays(std::span<const Edit> all) {
   for (const Edit& edit : all) {
-    edits.push_back(as_gpu(edit, points.size()));
+    edits.push_back(as_gpu(edit, points));
     edits.back().image = put(edit.image, texels);
     edits.back().mask = put(edit.mask, texels);
-    points.insert(points.end(), edit.stroke.begin(), edit.stroke.end());
   }
 }
 
 gpu::Optical EditArrays::apply(gpu::Optical optical, const glm::vec3& position, float depth, float spacing) const {
+  gpu::Optical below = optical;
   for (const gpu::MaterialEdit& e : edits) {
-    float distance = everywhere;
-    for (std::uint32_t k = 0; k < e.point_count; ++k) {
-      const glm::vec3 &a = points[e.first_point + (k > 0 ? k - 1 : 0)], &b = points[e.first_point + k];
-      distance = std::min(distance, gpu::segment_distance(position, a, b));
+    if (e.joins == 0) below = optical;
+    gpu::EditReach reach = reach_at(*this, e, e.place, position, depth, spacing);
+    if (e.mirrored == 1) {
+      const gpu::EditReach other = reach_at(*this, e, e.mirror, position, depth, spacing);
+      if (other.weight > reach.weight) reach = other;
     }
-    const Arriving found = arriving(e, texels, position, spacing);
-    optical = gpu::edited(optical, e, found.factor, found.weight * gpu::edit_weight(e, distance, depth));
+    optical = gpu::edited(optical, e, reach);
+    if (e.opacity < 1) optical = gpu::mixed(below, optical, e.opacity);
   }
   return optical;
 }

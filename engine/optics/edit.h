@@ -42,6 +42,14 @@ struct Names<EditOperation> {
                                            {EditOperation::set, "set", "the number itself"}});
 };
 
+// Where the mirror image of an edit is: of its stroke and of its box, as long as it has these.
+struct EditMirror {
+  std::vector<glm::vec3> stroke{};       // mm, at rest
+  std::optional<Placement> placement{};  // in which pictures are seen in a mirror: left is right
+
+  bool operator==(const EditMirror&) const = default;
+};
+
 // Where: all of the body, or what lies within `radius` of the stroke; of that what lies between two depths below the
 // surface, and in the box of a placement. Places and depths are those of the shape at rest: an edit moves with the
 // body.
@@ -60,6 +68,12 @@ struct Edit {
   // In the placement: coefficients above are those where the image is 1, in between they go with it, channel by
   // channel; the luminance of the mask, up to 1, is how much of the edit arrives.
   std::shared_ptr<const ImagePyramid> image{}, mask{};
+  std::optional<EditMirror> mirrored{};  // it is there as well; a place that both reach gets what is more
+
+  // Of layers (engine/optics/edit_layer.h), which set these: how much is left in the end of what this edit does
+  // together with those before that it joins, 0 to 1; and whether it joins the one before and those that this joins.
+  float opacity = 1;
+  bool joins = false;
 
   bool operator==(const Edit&) const = default;
 };

@@ -229,9 +229,7 @@ Scene scene_from(const JsonField& document) {
   scene.body = document.at("body").text();
   if (const auto material = document.find("material")) scene.material = material_from(*material);
   if (const auto materials = document.find("materials")) scene.materials = materials_from(*materials);
-  if (const auto edits = document.find("edits")) {
-    for (const JsonField& edit : edits->items()) scene.edits.push_back(edit_from(edit));
-  }
+  if (const auto edits = document.find("edits")) scene.layers = layers_from(*edits);
   if (const auto lights = document.find("lights")) {
     const std::vector<JsonField> items = lights->items();
     lights->within([&] { check_light_count(items.size()); });
@@ -250,14 +248,13 @@ Scene scene_from(const JsonField& document) {
 }
 
 Json to_json(const Scene& scene) {
-  Json edits = Json::array(), lights = Json::array(), deformation = Json::array(), cuts = Json::array();
-  for (const Edit& edit : scene.edits) edits.push_back(to_json(edit));
+  Json lights = Json::array(), deformation = Json::array(), cuts = Json::array();
   for (const Deformer& deformer : scene.deformation) deformation.push_back(to_json(deformer));
   for (const BodyCut& cut : scene.cuts) cuts.push_back(to_json(cut));
   for (const Light& light : scene.lights) lights.push_back(to_json(light));
   Json json = {{"quadgraph_scene", 1}, {"body", scene.body.string()}, {"material", scene.material}};
   if (!scene.materials.empty()) json["materials"] = scene.materials;
-  json["edits"] = std::move(edits);
+  json["edits"] = layers_json(scene.layers);
   json["lights"] = std::move(lights);
   json["deformation"] = std::move(deformation);
   json["cuts"] = std::move(cuts);

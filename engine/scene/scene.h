@@ -8,7 +8,7 @@
 
 #include "engine/deform/cut.h"
 #include "engine/deform/deformer.h"
-#include "engine/optics/edit.h"
+#include "engine/optics/edit_layer.h"
 #include "engine/render/display/camera.h"
 #include "engine/render/engine.h"
 #include "engine/render/light/lights.h"
@@ -21,7 +21,7 @@ struct Scene {
   std::filesystem::path body;                      // .qgraph
   std::string material = "marble";                 // as parse_material reads it, or a volume's file
   std::map<std::string, std::string> materials{};  // the same of bodies by their names; others have `material`
-  std::vector<Edit> edits{};                       // of the material, one after the other
+  std::vector<EditLayer> layers{};                 // of edits of the material, one after the other
   std::vector<Light> lights{};
   std::vector<Deformer> deformation{};  // one after the other
   std::vector<BodyCut> cuts{};          // away from the body as it is shown; only with shortest-path

@@ -68,6 +68,19 @@ std::vector<Json*> materials_of(Json& document) {
   return materials;
 }
 
+// The items of the array of that name, if it is one, and of such arrays in these, as layers of edits have them.
+std::vector<Json*> items_of(Json& object, const char* name) {
+  std::vector<Json*> items;
+  if (!object.is_object() || !object.contains(name) || !object[name].is_array()) return items;
+  for (Json& item : object[name]) {
+    items.push_back(&item);
+    if (item.is_object() && item.contains(name) && item[name].is_array()) {
+      for (Json& inner : item[name]) items.push_back(&inner);
+    }
+  }
+  return items;
+}
+
 // Replaces the files that a scene names: its body, volumes and the bodies that they are from, images of lights, edits
 // and the surface, and shapes of deformers.
 template <typename Function>
@@ -81,9 +94,8 @@ void each_file(Json& document, const Function& renamed) {
   }
   for (const auto& [list, name] :
        {std::pair{"lights", "file"}, {"edits", "image"}, {"edits", "mask"}, {"deformation", "shapes"}}) {
-    if (!document.contains(list) || !document[list].is_array()) continue;
-    for (Json& item : document[list]) {
-      for (Json* file : text_of(item, name)) {
+    for (Json* item : items_of(document, list)) {
+      for (Json* file : text_of(*item, name)) {
         if (*file != studio_name) files.push_back(file);
       }
     }

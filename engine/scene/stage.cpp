@@ -21,9 +21,10 @@ void Stage::show(const Scene& scene) {
     scene_.material = scene.material;
     scene_.materials = scene.materials;
   }
-  if (scene.edits != scene_.edits) {
-    engine_->set_edits(scene.edits);
-    scene_.edits = scene.edits;
+  if (scene.layers != scene_.layers) {
+    std::vector<Edit> edits = applied_edits(scene.layers);
+    if (edits != applied_edits(scene_.layers)) engine_->set_edits(edits);
+    scene_.layers = scene.layers;
   }
   if (fresh || scene.lights != scene_.lights) {
     engine_->set_lights(scene.lights);

@@ -120,10 +120,6 @@ float mixed(float a, float b, float t) {
   return glm::mix(a, b, t);
 }
 
-gpu::Optical mixed(const gpu::Optical& a, const gpu::Optical& b, float t) {
-  return {glm::mix(a.sigma_s_prime, b.sigma_s_prime, t), glm::mix(a.sigma_a, b.sigma_a, t)};
-}
-
 glm::dvec3 last_cell(const Volume& volume) {
   return {static_cast<double>(volume.cells[0] - 1), static_cast<double>(volume.cells[1] - 1),
           static_cast<double>(volume.cells[2] - 1)};

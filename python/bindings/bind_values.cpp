@@ -83,7 +83,8 @@ void bind_values(py::module_& module) {
   module.def("material_json", &material_json, py::arg("text"),
              "A material's members, in the shortest numbers, from the text that --material takes. Raises InputError.");
   module.def(
-      "set_edits", [](Engine& engine, const std::string& json) { engine.set_edits(members(json).edits); },
+      "set_edits",
+      [](Engine& engine, const std::string& json) { engine.set_edits(applied_edits(members(json).layers)); },
       py::arg("engine"), py::arg("json"), "The member `edits` of a scene. Raises InputError.");
   module.def(
       "check_scene", [](const std::string& json) { members(json); }, py::arg("json"),

@@ -18,24 +18,39 @@ const uint EDIT_SET = 2u;       // becomes it
 const uint EDIT_SCATTERING = 1u;
 const uint EDIT_ABSORPTION = 2u;
 
-// One edit: what it does, and where; engine/optics/edit.h says it in a user's words.
-struct MaterialEdit {
-  vec3 sigma_s_prime;
-  vec3 sigma_a;
-  vec3 low;          // mm, box of the places that it reaches, with point_count > 0
+// Where an edit is: its stroke and its box.
+struct EditPlace {
+  vec3 low;          // mm, box of the places that the stroke reaches, with point_count > 0
   vec3 high;         // mm
-  float depth_from;  // mm below the surface
-  float depth_to;    // mm
-  float radius;      // mm around the stroke
-  float softness;    // mm over which it fades at its bounds
-  uint operation;    // EDIT_MULTIPLY, EDIT_ADD, EDIT_SET
-  uint coefficients;
   uint first_point;  // of the stroke
   uint point_count;  // 0: everywhere
   uint placed;       // 1: only in the box
   ImageBox box;
-  ImageLevels image;  // of it: what the coefficients above are multiplied by
-  ImageLevels mask;   // of it: the luminance is how much of the edit arrives
+};
+
+// One edit: what it does, and where; engine/optics/edit.h says it in a user's words.
+struct MaterialEdit {
+  vec3 sigma_s_prime;
+  vec3 sigma_a;
+  float depth_from;  // mm below the surface
+  float depth_to;    // mm
+  float radius;      // mm around the stroke
+  float softness;    // mm over which it fades at its bounds
+  float opacity;     // how much is left in the end of what it does, together with those before that it joins
+  uint joins;        // 1: the edit before, and those that this joins
+  uint operation;    // EDIT_MULTIPLY, EDIT_ADD, EDIT_SET
+  uint coefficients;
+  uint mirrored;  // 1: also at `mirror`; a place gets what is more
+  EditPlace place;
+  EditPlace mirror;
+  ImageLevels image;  // in the box: what the coefficients above are multiplied by
+  ImageLevels mask;   // in the box: the luminance is how much of the edit arrives
+};
+
+// What an edit does at a place.
+struct EditReach {
+  vec3 factor;   // of its image
+  float weight;  // how much of it arrives, 0 to 1
 };
 
 QG_INLINE float segment_distance(vec3 p, vec3 a, vec3 b) {
@@ -51,18 +66,18 @@ QG_INLINE float inside(float x, float softness) {
   return t * t * (3.0f - 2.0f * t);
 }
 
-// How much of an edit arrives at `distance` from its stroke, mm, `depth` below the surface, mm; 0 to 1.
-QG_INLINE float edit_weight(MaterialEdit e, float distance, float depth) {
+// How much of an edit arrives at `distance` from its stroke at `where`, mm, `depth` below the surface, mm; 0 to 1.
+QG_INLINE float edit_weight(MaterialEdit e, EditPlace where, float distance, float depth) {
   float weight = inside(depth - e.depth_to, e.softness);
   if (e.depth_from > 0.0f) weight *= inside(e.depth_from - depth, e.softness);
-  if (e.point_count > 0u) weight *= inside(distance - e.radius, e.softness);
+  if (where.point_count > 0u) weight *= inside(distance - e.radius, e.softness);
   return weight;
 }
 
-// Weight of an edit's box at `place` in it (in_box).
-QG_INLINE float box_weight(MaterialEdit e, vec3 place) {
-  vec3 over = max(place, -place) - e.box.half_size;
-  return inside(max(over.x, max(over.y, over.z)), e.softness);
+// Weight of a box at `place` in it (in_box).
+QG_INLINE float box_weight(ImageBox box, vec3 place, float softness) {
+  vec3 over = max(place, -place) - box.half_size;
+  return inside(max(over.x, max(over.y, over.z)), softness);
 }
 
 QG_INLINE vec3 edited_coefficient(uint operation, vec3 value, vec3 by, float weight) {
@@ -72,13 +87,13 @@ QG_INLINE vec3 edited_coefficient(uint operation, vec3 value, vec3 by, float wei
   return clamp(edited, vec3(0.0f), vec3(COEFFICIENT_MAX));
 }
 
-// `factor`: what its image makes of its coefficients.
-QG_INLINE Optical edited(Optical optical, MaterialEdit e, vec3 factor, float weight) {
+QG_INLINE Optical edited(Optical optical, MaterialEdit e, EditReach reach) {
   if ((e.coefficients & EDIT_SCATTERING) != 0u) {
-    optical.sigma_s_prime = edited_coefficient(e.operation, optical.sigma_s_prime, factor * e.sigma_s_prime, weight);
+    vec3 by = reach.factor * e.sigma_s_prime;
+    optical.sigma_s_prime = edited_coefficient(e.operation, optical.sigma_s_prime, by, reach.weight);
   }
   if ((e.coefficients & EDIT_ABSORPTION) != 0u) {
-    optical.sigma_a = edited_coefficient(e.operation, optical.sigma_a, factor * e.sigma_a, weight);
+    optical.sigma_a = edited_coefficient(e.operation, optical.sigma_a, reach.factor * e.sigma_a, reach.weight);
   }
   return optical;
 }

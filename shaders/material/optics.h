@@ -8,6 +8,7 @@
 namespace quadgraph::gpu {
 using glm::max;
 using glm::min;
+using glm::mix;
 #endif
 
 // Largest scattering or absorption, 1/mm: a mean free path of a nanometre. Edits take more as this.
@@ -25,6 +26,14 @@ QG_INLINE vec3 sigma_t(Optical o) {
 // Diffusion coefficient, mm.
 QG_INLINE vec3 kappa(Optical o) {
   return vec3(1.0f / 3.0f) / sigma_t(o);
+}
+
+// From `a` towards `b` by a share of the way.
+QG_INLINE Optical mixed(Optical a, Optical b, float share) {
+  Optical between;
+  between.sigma_s_prime = mix(a.sigma_s_prime, b.sigma_s_prime, share);
+  between.sigma_a = mix(a.sigma_a, b.sigma_a, share);
+  return between;
 }
 
 QG_INLINE float contrast(vec3 large, vec3 small) {

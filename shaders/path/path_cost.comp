@@ -57,10 +57,6 @@ Optical optical_cell(PathMaterial body, uvec3 cell) {
   return body.optical.at[cell.x + body.optical_size.x * (cell.y + body.optical_size.y * cell.z)];
 }
 
-Optical mixed(Optical a, Optical b, float t) {
-  return Optical(mix(a.sigma_s_prime, b.sigma_s_prime, t), mix(a.sigma_a, b.sigma_a, t));
-}
-
 // Coefficients of a grid at a position, trilinear as in engine/scene/volume.h.
 Optical volume_at(PathMaterial body, vec3 position) {
   vec3 last = vec3(body.optical_size - 1u);

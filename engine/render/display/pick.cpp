@@ -38,7 +38,61 @@ void move_to_cut(Picked& found, const DisplayMesh& mesh, std::span<const glm::ve
   found.at_rest = mesh.vertices[t.x] + found.to_rest * (found.position - vertices[t.x]);
 }
 
+glm::dvec3 between(std::span<const glm::vec3> vertices, const glm::uvec3& t, const glm::dvec3& share) {
+  return share.x * glm::dvec3(vertices[t.x]) + share.y * glm::dvec3(vertices[t.y]) +
+         share.z * glm::dvec3(vertices[t.z]);
+}
+
+// From a place to the box around a triangle, mm.
+double distance_to_box(std::span<const glm::vec3> vertices, const glm::uvec3& t, const glm::vec3& p) {
+  const glm::vec3 &a = vertices[t.x], &b = vertices[t.y], &c = vertices[t.z];
+  const glm::vec3 low = glm::min(a, glm::min(b, c)), high = glm::max(a, glm::max(b, c));
+  return double{glm::length(p - glm::clamp(p, low, high))};
+}
+
+// Shares of the corners in the place of a triangle that is nearest to `p`.
+glm::dvec3 nearest_share(std::span<const glm::vec3> vertices, const glm::uvec3& t, const glm::dvec3& p) {
+  const glm::dvec3 corners[] = {glm::dvec3(vertices[t.x]), glm::dvec3(vertices[t.y]), glm::dvec3(vertices[t.z])};
+  const glm::dvec3 ab = corners[1] - corners[0], ac = corners[2] - corners[0], ap = p - corners[0];
+  const glm::dvec3 n = glm::cross(ab, ac) / std::max(glm::dot(glm::cross(ab, ac), glm::cross(ab, ac)), 1e-60);
+  const double b = glm::dot(glm::cross(ap, ac), n), c = glm::dot(glm::cross(ab, ap), n);
+  if (b >= 0 && c >= 0 && b + c <= 1 && n != glm::dvec3(0)) return {1 - b - c, b, c};
+  glm::dvec3 best(1, 0, 0);
+  double least = std::numeric_limits<double>::max();
+  for (int i = 0; i < 3; ++i) {
+    const glm::dvec3 &from = corners[i], edge = corners[(i + 1) % 3] - from;
+    const double along = glm::clamp(glm::dot(p - from, edge) / std::max(glm::dot(edge, edge), 1e-60), 0.0, 1.0);
+    const double away = glm::length(p - from - along * edge);
+    if (away >= least) continue;
+    least = away;
+    best = glm::dvec3(0);
+    best[i] = 1 - along;
+    best[(i + 1) % 3] = along;
+  }
+  return best;
+}
+
 }  // namespace
+
+std::optional<Picked> nearest_to(const DisplayMesh& mesh, std::span<const glm::vec3> vertices,
+                                 const glm::vec3& at_rest) {
+  std::optional<glm::uvec3> triangle;
+  glm::dvec3 share(0);
+  double least = std::numeric_limits<double>::max();
+  for (const glm::uvec3& t : mesh.triangles) {
+    if (distance_to_box(mesh.vertices, t, at_rest) >= least) continue;
+    const glm::dvec3 there = nearest_share(mesh.vertices, t, at_rest);
+    const double away = glm::length(between(mesh.vertices, t, there) - glm::dvec3(at_rest));
+    if (away >= least) continue;
+    least = away;
+    share = there;
+    triangle = t;
+  }
+  if (!triangle) return std::nullopt;
+  const glm::dmat3 now = frame_of(vertices, *triangle);
+  return Picked{glm::vec3(between(vertices, *triangle, share)), glm::vec3(between(mesh.vertices, *triangle, share)),
+                glm::vec3(glm::normalize(now[2])), glm::mat3(frame_of(mesh.vertices, *triangle) * glm::inverse(now))};
+}
 
 std::optional<Picked> pick(const DisplayMesh& mesh, std::span<const glm::vec3> vertices, const Camera& camera,
                            const glm::vec2& at, std::span<const gpu::PathTool> tools) {

@@ -27,4 +27,9 @@ struct Picked {
 std::optional<Picked> pick(const DisplayMesh& mesh, std::span<const glm::vec3> vertices, const Camera& camera,
                            const glm::vec2& at, std::span<const gpu::PathTool> tools = {});
 
+// The place of the display mesh that is nearest to `at_rest`, mm, in the shape at rest; its vertices are now at
+// `vertices`. Empty where the mesh has no triangles.
+std::optional<Picked> nearest_to(const DisplayMesh& mesh, std::span<const glm::vec3> vertices,
+                                 const glm::vec3& at_rest);
+
 }  // namespace quadgraph

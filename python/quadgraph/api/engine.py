@@ -170,7 +170,10 @@ class Engine:
         self._solution = None
 
     def set_edits(self, edits: Sequence[Mapping[str, Any]]) -> None:
-        """Change the material in places, one edit after the other (docs/scene.md, "Edits"). Raises InputError."""
+        """Change the material in places, one edit, or layer of edits, after the other (docs/scene.md, "Edits").
+
+        Raises InputError.
+        """
         core.set_edits(self._engine, json.dumps({"edits": [plain_members(edit) for edit in edits]}))
 
     def set_cuts(self, cuts: Sequence[Mapping[str, Any]]) -> None:

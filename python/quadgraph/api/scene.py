@@ -24,8 +24,8 @@ class Scene:
     """All that is shown. body: a baked .qgraph; what is None or left out is as in a scene file.
 
     material: a `Material` or a text as --material takes it; materials: of bodies by their names, where the file has
-    several; lights: None for the studio, and the ground with it, [] for
-    darkness; edits and cuts: objects as scene files have them. Raises InputError naming the member and what is allowed.
+    several; lights: None for the studio, and the ground with it, [] for darkness; edits, or layers of them, and cuts:
+    objects as scene files have them. Raises InputError naming the member and what is allowed.
     """
 
     body: str | Path

@@ -20,14 +20,16 @@ RGB: TypeAlias = float | Vector  # one number for all channels, or red, green, b
 
 
 def plain(value: object) -> Any:
-    """Arrays and sequences as tuples, NumPy's numbers as Python's, paths as texts: comparable, and ready for JSON."""
+    """Arrays and sequences as tuples, NumPy's numbers as Python's, paths as texts, also in mappings: comparable, and
+    ready for JSON.
+    """
     if isinstance(value, np.ndarray | np.generic):
         value = value.tolist()
     if isinstance(value, os.PathLike):
         return os.fspath(value)
     if isinstance(value, list | tuple):
         return tuple(plain(item) for item in value)
-    return value
+    return plain_members(value) if isinstance(value, Mapping) else value
 
 
 def numbers(name: str, value: object, wanted: str) -> npt.NDArray[Any]:
@@ -50,7 +52,7 @@ def single(values: npt.NDArray[Any]) -> Floats:
 
 def plain_members(members: Mapping[str, Any]) -> dict[str, Any]:
     """Return an object of a scene file with plain values."""
-    return {name: plain_members(v) if isinstance(v, Mapping) else plain(v) for name, v in members.items()}
+    return {name: plain(value) for name, value in members.items()}
 
 
 @dataclass(frozen=True, repr=False)

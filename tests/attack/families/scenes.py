@@ -34,6 +34,20 @@ SCENE: dict[str, Any] = {
             "image": "image.png",
             "placement": {"centre": [10, 0, 4], "direction": [0, 0, -1], "up": [0, 1, 0], "size": [8, 8, 8]},
         },
+        {
+            "name": "Spots",
+            "visible": True,
+            "opacity": 0.5,
+            "edits": [
+                {
+                    "operation": "set",
+                    "sigma_a": 0.2,
+                    "stroke": [[8, 0, 4], [6, 0, 4]],
+                    "radius": 2,
+                    "mirrored": {"stroke": [[-8, 0, 4], [-6, 0, 4]]},
+                },
+            ],
+        },
     ],
     "lights": [
         {"type": "directional", "direction": [0.5, -0.5, -1], "irradiance": [1, 0.9, 0.7]},

@@ -56,27 +56,29 @@ TEST_CASE("what could not be shown is no step to go back to") {
 TEST_CASE("a stroke follows the hand in steps of the brush's size") {
   const Brush brush = Brush::for_body(15);
   Scene scene;
-  brush.begin(scene, {.at = {0, 0, 0}});
-  REQUIRE(scene.edits.size() == 1);
-  check_edit(scene.edits[0]);
-  for (int i = 1; i <= 100; ++i) brush.lead(scene, {.at = {0.05f * static_cast<float>(i), 0, 0}});
-  const auto& stroke = scene.edits[0].stroke;
+  scene.layers = {{.name = "Layer 1"}};
+  brush.begin(scene, 0, {{.at = {0, 0, 0}}});
+  REQUIRE(scene.layers[0].edits.size() == 1);
+  check_edit(scene.layers[0].edits[0]);
+  for (int i = 1; i <= 100; ++i) brush.lead(scene, 0, {{.at = {0.05f * static_cast<float>(i), 0, 0}}});
+  const auto& stroke = scene.layers[0].edits[0].stroke;
   CHECK(stroke.size() > 12);
   CHECK(stroke.size() < 20);
   CHECK(stroke.back().x > 5 - 0.4f);
-  brush.begin(scene, {.at = {0, 3, 0}});
-  CHECK(scene.edits.size() == 2);
+  brush.begin(scene, 0, {{.at = {0, 3, 0}}});
+  CHECK(scene.layers[0].edits.size() == 2);
 }
 
 TEST_CASE("paint has the colour that was asked for, as strong as that, and can be picked and erased") {
   Brush brush = Brush::for_body(15);
   Scene scene;
+  scene.layers = {{.name = "Layer 1"}};
   scene.material = "wholemilk";
   const MaterialLook own = look_of(scene.material).value();
   const auto painted = [&](float strength) {
     brush.strength = strength;
-    brush.begin(scene, {.at = {0, 0, 0}});
-    const Edit& edit = scene.edits.back();
+    brush.begin(scene, 0, {{.at = {0, 0, 0}}});
+    const Edit& edit = scene.layers[0].edits.back();
     check_edit(edit);
     CHECK(edit.operation == EditOperation::set);
     gpu::Material material{};
@@ -90,17 +92,17 @@ TEST_CASE("paint has the colour that was asked for, as strong as that, and can b
   CHECK(whole.distance == doctest::Approx(brush.look.distance).epsilon(0.01));
   CHECK(glm::distance(none.colour, own.colour) < 0.02f);
   brush.strength = 1;
-  scene.edits.pop_back();
+  scene.layers[0].edits.pop_back();
   const glm::vec3 red = brush.look.colour;
-  brush.pick(scene, {.at = {5, 0, 0}});  // beside the stroke
+  brush.pick(scene, {{.at = {5, 0, 0}}});  // beside the stroke
   CHECK(glm::distance(brush.look.colour, own.colour) < 0.01f);
-  brush.pick(scene, {.at = {0.1f, 0, 0}});
+  brush.pick(scene, {{.at = {0.1f, 0, 0}}});
   CHECK(glm::distance(brush.look.colour, red) < 0.01f);
-  Brush::erase(scene, {.at = {5, 0, 0}});
-  CHECK(scene.edits.size() == 1);
-  Brush::erase(scene, {.at = {0.1f, 0, 0}});
-  CHECK(scene.edits.empty());
-  Brush::erase(scene, {.at = {0, 0, 0}});
+  Brush::erase(scene.layers[0], {{.at = {5, 0, 0}}});
+  CHECK(scene.layers[0].edits.size() == 1);
+  Brush::erase(scene.layers[0], {{.at = {0.1f, 0, 0}}});
+  CHECK(scene.layers[0].edits.empty());
+  Brush::erase(scene.layers[0], {{.at = {0, 0, 0}}});
 }
 
 TEST_CASE("a material of a colour and a distance shows them") {
@@ -134,17 +136,18 @@ TEST_CASE("a stamp lies on the surface where the brush touches it, the way up th
   brush.edit.image = std::make_shared<const ImagePyramid>(image);
   brush.edit.softness = 100;
   Scene scene;
+  scene.layers = {{.name = "Layer 1"}};
   const glm::vec3 there(0, 0, 10);
-  brush.begin(scene, {there, {0, 0, -1}, {0, 1, 0}});
-  brush.lead(scene, {there + glm::vec3(0.01f, 0, 0), {0, 0, -1}, {0, 1, 0}});
-  REQUIRE(scene.edits.size() == 1);
-  check_edit(scene.edits[0]);
-  const Placement placement = scene.edits[0].placement.value();
+  brush.begin(scene, 0, {{there, {0, 0, -1}, {0, 1, 0}}});
+  brush.lead(scene, 0, {{there + glm::vec3(0.01f, 0, 0), {0, 0, -1}, {0, 1, 0}}});
+  REQUIRE(scene.layers[0].edits.size() == 1);
+  check_edit(scene.layers[0].edits[0]);
+  const Placement placement = scene.layers[0].edits[0].placement.value();
   CHECK(placement.centre.x == 0.01f);
   CHECK(placement.size.x == doctest::Approx(2 * brush.edit.radius));
   CHECK(placement.size.y == doctest::Approx(brush.edit.radius));
-  CHECK(scene.edits[0].softness <= 0.25f * placement.size.y);
-  CHECK(scene.edits[0].stroke.empty());
+  CHECK(scene.layers[0].edits[0].softness <= 0.25f * placement.size.y);
+  CHECK(scene.layers[0].edits[0].stroke.empty());
 }
 
 TEST_CASE("what the brush touches goes with a body that has been turned and stretched") {
@@ -155,7 +158,7 @@ TEST_CASE("what the brush touches goes with a body that has been turned and stre
   const Camera camera = place_camera({.elevation = 0}, {{0.3f, 0.5f, 7}, 1}, 1);
   const auto picked = pick(mesh, now, camera, {0, 0});
   REQUIRE(picked.has_value());
-  const Touch touch = touched(*picked, camera);
+  const TouchPlace touch = touched(*picked, camera);
   CHECK(glm::distance(touch.at, glm::vec3(2, 0.25f, -0.3f)) < 1e-5f);
   CHECK(glm::distance(touch.inward, glm::vec3(-1, 0, 0)) < 1e-5f);
   CHECK(glm::distance(touch.upright, glm::vec3(0, 1, 0)) < 1e-5f);

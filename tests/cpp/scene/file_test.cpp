@@ -58,18 +58,28 @@ std::string one_texel(const Folder& folder) {
   return path.string();
 }
 
+std::vector<EditLayer> layers() {
+  std::vector<Edit> edits = {{.operation = Edit::Operation::multiply,
+                              .sigma_a = glm::vec3(2, 1, 0.1f),
+                              .stroke = {{0, 0, 0}, {1, 0.3f, 0}},
+                              .radius = 0.7f,
+                              .depth_from = 0.1f,
+                              .depth_to = 0.9f,
+                              .softness = 0.25f},
+                             {.operation = Edit::Operation::set, .sigma_s_prime = glm::vec3(3)}};
+  edits[0].mirrored = EditMirror{.stroke = {{3, 0, 0}, {2, 0.3f, 0}}};
+  Edit stamp{.sigma_a = glm::vec3(2), .placement = Placement{.centre = {1, 1, 2}, .size = {1, 1, 0.5f}}};
+  stamp.mirrored = EditMirror{.placement = stamp.placement};
+  return {{.name = "Spots & \xc3\xa4", .opacity = 0.25f, .edits = edits},
+          {.name = "Layer 1", .visible = false, .edits = {stamp}},
+          {.name = "none yet"}};
+}
+
 Scene with_everything(const Folder& folder) {
   Scene scene;
   scene.body = cube;
   scene.material = "skin1,eta=1.4";
-  scene.edits = {{.operation = Edit::Operation::multiply,
-                  .sigma_a = glm::vec3(2, 1, 0.1f),
-                  .stroke = {{0, 0, 0}, {1, 0.3f, 0}},
-                  .radius = 0.7f,
-                  .depth_from = 0.1f,
-                  .depth_to = 0.9f,
-                  .softness = 0.25f},
-                 {.operation = Edit::Operation::set, .sigma_s_prime = glm::vec3(3)}};
+  scene.layers = layers();
   scene.lights = {parse_light("directional:0,0.6,-0.8:1/2/3"),
                   parse_light("point:1,2,3:0.1"),
                   parse_light("ambient:0.5"),
@@ -257,7 +267,7 @@ TEST_CASE("a stage that went through other scenes shows the same as a fresh one"
   scene.solve = {};
   Scene other = scene;
   other.material = "ketchup";
-  other.edits.clear();
+  other.layers.clear();
   other.deformation.pop_back();
   other.lights.pop_back();
   Stage travelled(test_device()), fresh(test_device());

@@ -7,6 +7,7 @@
 #include "engine/base/error.h"
 #include "engine/file/geometry.h"
 #include "engine/optics/depth.h"
+#include "engine/optics/edit_layer.h"
 #include "shaders/material/material.h"
 #include "tests/cpp/fixtures/solve_fixtures.h"
 
@@ -24,7 +25,18 @@ std::shared_ptr<const ImagePyramid> noise(std::uint32_t width, std::uint32_t hei
   return std::make_shared<const ImagePyramid>(pyramid_of(image, 1024));
 }
 
-const std::vector<Edit> edits = {
+// In layers that are half and three quarters there, the upper one with mirror images.
+std::vector<Edit> in_layers(std::vector<Edit> edits) {
+  edits[0].mirrored = EditMirror{.stroke = {{2, 8, 1}, {3, 7, 2}, {8, 5, 2}}};
+  Placement other = edits[3].placement.value();
+  other.centre = {2, 6, 3};
+  edits[3].mirrored = EditMirror{.placement = other};
+  const EditLayer lower{.name = "a", .opacity = 0.5f, .edits = {edits[1], edits[2]}};
+  const EditLayer upper{.name = "b", .opacity = 0.75f, .edits = {edits[0], edits[3]}};
+  return applied_edits(std::vector{lower, upper, EditLayer{.name = "c", .edits = {edits[1]}}});
+}
+
+const std::vector<Edit> plain_edits = {
     {.operation = Edit::Operation::multiply,
      .sigma_s_prime = glm::vec3(0.5f, 1, 2),
      .stroke = {{2, 2, 9}, {8, 3, 9}, {7, 8, 8}},
@@ -44,6 +56,8 @@ const std::vector<Edit> edits = {
      .placement = Placement{.centre = {5, 4, 5}, .direction = {1, -1, 0.5f}, .up = {0, 1, 1}, .size = {8, 7, 12}},
      .image = noise(9, 5),
      .mask = noise(70, 33)}};
+
+const std::vector<Edit> edits = in_layers(plain_edits);
 
 std::vector<gpu::Optical> edited_on_cpu(const Level& level, const gpu::Material& material) {
   const EditArrays arrays(edits);
