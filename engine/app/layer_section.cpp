@@ -1,9 +1,9 @@
 #include "engine/app/layer_section.h"
 
 #include <imgui.h>
+#include <imgui_stdlib.h>
 
 #include <algorithm>
-#include <array>
 
 #include "engine/app/layers.h"
 #include "engine/app/panel_widgets.h"
@@ -70,16 +70,17 @@ void draw_buttons_of_layers(State& state) {
   if (button("Down##layer", any && state.layer > 0)) move_layer(scene, state.layer, false);
 }
 
-// A name that is none leaves the one before.
-void draw_name(EditLayer& layer) {
-  std::array<char, longest_layer_name + 1> text{};
-  layer.name.copy(text.data(), longest_layer_name);
-  if (!ImGui::InputText("Name##layer", text.data(), text.size())) return;
-  EditLayer named{.name = text.data()};
+// What is typed is the name once the field is left; one that cannot be a name is said, and leaves the one before.
+void draw_name(State& state, EditLayer& layer) {
+  if (!state.names_layer) state.layer_text = layer.name;
+  ImGui::InputText("Name##layer", &state.layer_text);
+  state.names_layer = ImGui::IsItemActive();
+  if (!ImGui::IsItemDeactivatedAfterEdit()) return;
   try {
-    check_layer(named);
-    layer.name = named.name;
-  } catch (const InputError&) {  // nothing is left of the text yet
+    check_layer({.name = state.layer_text});
+    layer.name = state.layer_text;
+  } catch (const InputError& error) {
+    state.say(error.what(), true);
   }
 }
 
@@ -92,7 +93,7 @@ void draw_layers(State& state) {
   keep_active(state.scene, state.layer);
   if (state.scene.layers.empty()) return;
   EditLayer& layer = state.scene.layers[state.layer];
-  draw_name(layer);
+  draw_name(state, layer);
   float share = 100 * layer.opacity;
   if (slide("Opacity##layer", share, 0, 100, "%.0f%%")) layer.opacity = std::clamp(share / 100, 0.0f, 1.0f);
   tell("Strokes", formatted("%zu in %s", layer.edits.size(), layer.name.c_str()));

@@ -6,12 +6,12 @@
 namespace quadgraph {
 namespace {
 
-// "Layer 3", with the first number that no layer has in its name.
+// "Layer 3", of the third; with the next number that no layer has in its name.
 std::string fresh_name(const Scene& scene) {
   const auto taken = [&](const std::string& name) {
     return std::ranges::any_of(scene.layers, [&](const EditLayer& layer) { return layer.name == name; });
   };
-  std::size_t number = 1;
+  std::size_t number = scene.layers.size() + 1;
   while (taken(layer_name(number))) ++number;
   return layer_name(number);
 }
@@ -39,8 +39,12 @@ void move_layer(Scene& scene, std::size_t& active, bool up) {
   active = other;
 }
 
+std::size_t topmost(const Scene& scene) {
+  return scene.layers.empty() ? 0 : scene.layers.size() - 1;
+}
+
 void keep_active(const Scene& scene, std::size_t& active) {
-  active = scene.layers.empty() ? 0 : std::min(active, scene.layers.size() - 1);
+  active = std::min(active, topmost(scene));
 }
 
 }  // namespace quadgraph

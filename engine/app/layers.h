@@ -15,7 +15,10 @@ void remove_layer(Scene& scene, std::size_t& active);
 // Moves the active layer a place up, nearer to the eye, or down.
 void move_layer(Scene& scene, std::size_t& active, bool up);
 
-// A scene that undo, or a file, has changed may have fewer layers: the active one is then the topmost.
+// The number of the topmost layer; 0 where there is none.
+std::size_t topmost(const Scene& scene);
+
+// A scene that undo has changed may have fewer layers: the active one is then the topmost.
 void keep_active(const Scene& scene, std::size_t& active);
 
 }  // namespace quadgraph

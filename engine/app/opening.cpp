@@ -115,8 +115,7 @@ void Viewer::show_opened(const Scene& scene) {
   state_.preview.clear();
   state_.uncut.reset();
   state_.light = state_.cut = 0;
-  state_.layer = state_.scene.layers.size();  // the topmost
-  keep_active(state_.scene, state_.layer);
+  state_.layer = topmost(state_.scene);
   state_.brush = Brush::for_body(engine().bounds().radius);
   take_up_body();
   saving_.stem.replace_filename(scene.body.stem());

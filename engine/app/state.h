@@ -55,7 +55,9 @@ struct State {
   float front = 0;                  // of the body, degrees
   std::size_t light = 0;            // the selected one
   Brush brush;
-  std::size_t layer = 0;  // the active one, which is painted
+  std::size_t layer = 0;     // the active one, which is painted
+  std::string layer_text;    // its name,
+  bool names_layer = false;  // which is being typed
   Knife knife;
   std::optional<Uncut> uncut;  // how it was shown before it was cut, until it is whole again
   std::size_t cut = 0;         // the selected one

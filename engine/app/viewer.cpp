@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/app/layers.h"
 #include "engine/app/modes.h"
 #include "engine/app/overlays.h"
 #include "engine/app/panel.h"
@@ -35,6 +36,7 @@ Viewer::Viewer(Window& window, vk::Context& presenter, Stage& stage, Saving savi
       history_(stage.scene()),
       saved_(stage.scene()) {
   state_.scene = stage.scene();
+  state_.layer = topmost(state_.scene);
   take_up_body();
   if (preview_) state_.preview = preview_->label();
   state_.brush = Brush::for_body(engine().bounds().radius);

@@ -23,13 +23,15 @@ float stroke_distance(Vec3s points, EditPlace where, vec3 position) {
   return nearest;
 }
 
+bool in_bounds(vec3 position, uint point_count, vec3 low, vec3 high) {
+  return point_count == 0u || (all(greaterThan(position, low)) && all(lessThan(position, high)));
+}
+
 EditReach reach_at(AllEdits those, MaterialEdit e, EditPlace where, vec3 position, float depth) {
   EditReach reach;
   reach.factor = vec3(1);
-  reach.weight = 0.0;
-  bool strokes = where.point_count > 0u;
-  if (strokes && !(all(greaterThan(position, where.low)) && all(lessThan(position, where.high)))) return reach;
-  reach.weight = edit_weight(e, where, strokes ? stroke_distance(those.points, where, position) : 0.0, depth);
+  float distance = where.point_count > 0u ? stroke_distance(those.points, where, position) : 0.0;
+  reach.weight = edit_weight(e, where, distance, depth);
   if (where.placed == 0u) return reach;
   vec3 place = in_box(where.box, position);
   vec2 at = in_picture(where.box, place);
@@ -46,19 +48,32 @@ EditReach reach_at(AllEdits those, MaterialEdit e, EditPlace where, vec3 positio
   return reach;
 }
 
-// At a place, mm, at rest, `depth` mm below the surface.
+// After edit k, where its own strokes are near (`here`), or their mirror images (`there`).
+Optical after_edit(AllEdits those, uint k, Optical optical, vec3 position, float depth, bool here, bool there) {
+  MaterialEdit e = those.edits.at[k];
+  EditReach reach;
+  reach.factor = vec3(1);
+  reach.weight = 0.0;
+  if (here) reach = reach_at(those, e, e.place, position, depth);
+  if (there) {
+    EditReach other = reach_at(those, e, e.mirror, position, depth);
+    if (other.weight > reach.weight) reach = other;
+  }
+  return edited(optical, e, reach);
+}
+
+// At a place, mm, at rest, `depth` mm below the surface. Of edits that are far only the bounds are loaded.
 Optical edited_at(AllEdits those, Optical optical, vec3 position, float depth) {
   Optical below = optical;
   for (uint k = 0u; k < those.count; ++k) {
-    MaterialEdit e = those.edits.at[k];
-    if (e.joins == 0u) below = optical;
-    EditReach reach = reach_at(those, e, e.place, position, depth);
-    if (e.mirrored == 1u) {
-      EditReach other = reach_at(those, e, e.mirror, position, depth);
-      if (other.weight > reach.weight) reach = other;
-    }
-    if (reach.weight > 0.0) optical = edited(optical, e, reach);
-    if (e.opacity < 1.0) optical = mixed(below, optical, e.opacity);
+    bool here = in_bounds(position, those.edits.at[k].place.point_count, those.edits.at[k].place.low,
+                          those.edits.at[k].place.high);
+    bool there = those.edits.at[k].mirrored == 1u &&
+                 in_bounds(position, those.edits.at[k].mirror.point_count, those.edits.at[k].mirror.low,
+                           those.edits.at[k].mirror.high);
+    if (those.edits.at[k].joins == 0u) below = optical;
+    if (here || there) optical = after_edit(those, k, optical, position, depth, here, there);
+    if (those.edits.at[k].opacity < 1.0) optical = mixed(below, optical, those.edits.at[k].opacity);
   }
   return optical;
 }

@@ -30,19 +30,20 @@ struct EditPlace {
 
 // One edit: what it does, and where; engine/optics/edit.h says it in a user's words.
 struct MaterialEdit {
+  // What is looked at for every place comes first.
+  float opacity;  // how much is left in the end of what it does, together with those before that it joins
+  uint joins;     // 1: the edit before, and those that this joins
+  uint mirrored;  // 1: also at `mirror`; a place gets what is more
+  EditPlace place;
+  EditPlace mirror;
   vec3 sigma_s_prime;
   vec3 sigma_a;
   float depth_from;  // mm below the surface
   float depth_to;    // mm
   float radius;      // mm around the stroke
   float softness;    // mm over which it fades at its bounds
-  float opacity;     // how much is left in the end of what it does, together with those before that it joins
-  uint joins;        // 1: the edit before, and those that this joins
   uint operation;    // EDIT_MULTIPLY, EDIT_ADD, EDIT_SET
   uint coefficients;
-  uint mirrored;  // 1: also at `mirror`; a place gets what is more
-  EditPlace place;
-  EditPlace mirror;
   ImageLevels image;  // in the box: what the coefficients above are multiplied by
   ImageLevels mask;   // in the box: the luminance is how much of the edit arrives
 };

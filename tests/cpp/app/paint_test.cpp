@@ -61,7 +61,7 @@ TEST_CASE("layers are added above the active one, moved and removed with their s
   CHECK(active == 1);
   scene.layers[1].name = "Veins";
   add_layer(scene, active);
-  CHECK(names_of(scene) == "Layer 1;Veins;Layer 3;Layer 2;");
+  CHECK(names_of(scene) == "Layer 1;Veins;Layer 4;Layer 2;");
   remove_layer(scene, active);
   CHECK(active == 1);
   active = 0;
@@ -69,6 +69,7 @@ TEST_CASE("layers are added above the active one, moved and removed with their s
   move_layer(scene, active, false);  // is the lowest
   CHECK(names_of(scene) == "Veins;Layer 2;");
   CHECK(active == 0);
+  CHECK(topmost(scene) == 1);
   active = 7;
   keep_active(scene, active);
   CHECK(active == 1);

@@ -26,7 +26,8 @@ const Edit twice{.operation = multiply, .sigma_a = glm::vec3(2)}, plus{.operatio
 
 // 1 at x = 0.. of a stroke that fades from 1 to 3 mm around the origin, and its image about x = 10.
 Edit both_sides() {
-  Edit edit{.operation = EditOperation::set, .sigma_a = glm::vec3(1), .stroke = {{0, 0, 0}}, .radius = 2, .softness = 2};
+  Edit edit{
+      .operation = EditOperation::set, .sigma_a = glm::vec3(1), .stroke = {{0, 0, 0}}, .radius = 2, .softness = 2};
   edit.mirrored = EditMirror{.stroke = {{10, 0, 0}}};
   return edit;
 }

@@ -21,6 +21,7 @@ SCHEMA = json.loads((Path(__file__).resolve().parents[3] / "docs" / "scene.schem
 SPOT = {"operation": "add", "sigma_a": 1, "stroke": [[6, 0, 8]], "radius": 4, "softness": 2}
 OTHER = {"stroke": [[-6, 0, 8]]}
 DARK = {"operation": "add", "sigma_a": 0.5}
+FAR = np.array([[6.0, 0.0, -8.0], [-6.0, 0.0, -8.0], [0.0, 6.0, -8.0]])  # mm, on the unlit side of the ball
 
 
 @pytest.fixture(scope="module")
@@ -72,6 +73,26 @@ def test_hidden_layers_are_not_there_and_opacity_is_a_share_of_the_way(folder):
         rtol=1e-4,
     )
     assert none[:, 3].mean() > 1.5 * exitance(folder, [half])[:, 3].mean()
+
+
+def test_shortest_paths_see_layers_and_mirror_images_too(folder):
+    paths = {"solver": {"method": "shortest-path", "path": {"cells": 40}}}
+
+    def shown(*edits: dict) -> np.ndarray:
+        """What leaves at places of the unlit side, (places, 3)."""
+        stage = core.Stage(validation=True)
+        stage.show(core.SceneFile(scene_of(folder, list(edits), **paths)).at(0))
+        stage.solve()
+        assert stage.engine.validation_messages == []
+        return stage.engine.exitance_at(FAR)
+
+    weak = shown(layer(DARK, opacity=0.5))
+    assert np.allclose(weak, shown({**DARK, "sigma_a": 0.25}), rtol=1e-4)
+    assert weak.mean() < 0.9 * shown().mean()
+    here, there = ({**SPOT, "stroke": [[side, 0, -8]]} for side in (6, -6))
+    both = shown({**here, "mirrored": {"stroke": there["stroke"]}})
+    assert np.allclose(both, shown(here, there), rtol=1e-4)  # they do not meet
+    assert (both[:2, 0] < 0.5 * shown()[:2, 0]).all()
 
 
 def test_a_mirrored_stroke_darkens_both_sides_alike(folder):
