@@ -43,6 +43,11 @@ glm::dvec3 between(std::span<const glm::vec3> vertices, const glm::uvec3& t, con
          share.z * glm::dvec3(vertices[t.z]);
 }
 
+// Whether a triangle has no normal; what is on it is on its neighbours too.
+bool is_flat(std::span<const glm::vec3> vertices, const glm::uvec3& t) {
+  return frame_of(vertices, t)[2] == glm::dvec3(0);
+}
+
 // From a place to the box around a triangle, mm.
 double distance_to_box(std::span<const glm::vec3> vertices, const glm::uvec3& t, const glm::vec3& p) {
   const glm::vec3 &a = vertices[t.x], &b = vertices[t.y], &c = vertices[t.z];
@@ -83,7 +88,7 @@ std::optional<Picked> nearest_to(const DisplayMesh& mesh, std::span<const glm::v
     if (distance_to_box(mesh.vertices, t, at_rest) >= least) continue;
     const glm::dvec3 there = nearest_share(mesh.vertices, t, at_rest);
     const double away = glm::length(between(mesh.vertices, t, there) - glm::dvec3(at_rest));
-    if (away >= least) continue;
+    if (away >= least || is_flat(mesh.vertices, t) || is_flat(vertices, t)) continue;
     least = away;
     share = there;
     triangle = t;

@@ -39,9 +39,9 @@ struct Painted {
   }
 };
 
-// A square of two triangles in the plane z = 1, seen from +z.
+// A square of two triangles, and one without area, in the plane z = 1, seen from +z.
 const std::vector<glm::vec3> corners = {{-2, 0, 1}, {2, 0, 1}, {2, 4, 1}, {-2, 4, 1}};
-const std::vector<glm::uvec3> halves = {{0, 1, 2}, {0, 2, 3}};
+const std::vector<glm::uvec3> halves = {{1, 2, 2}, {0, 1, 2}, {0, 2, 3}};  // the first is an edge
 const DisplayMesh square{corners, {}, halves, {}, {}};
 
 }  // namespace
@@ -167,6 +167,7 @@ TEST_CASE("the mirrored place is on the body, however far off it the mirror puts
   CHECK(glm::distance(inside.normal, glm::vec3(0, 1, 0)) < 1e-5f);
   CHECK(glm::distance(nearest_to(square, now, {5, 3, 2})->at_rest, glm::vec3(2, 3, 1)) < 1e-5f);     // over an edge
   CHECK(glm::distance(nearest_to(square, now, {-5, -9, 0})->at_rest, glm::vec3(-2, 0, 1)) < 1e-5f);  // over a corner
+  CHECK(nearest_to(square, now, {5, 3, 2})->normal == glm::vec3(0, 1, 0));
   CHECK(!nearest_to({}, {}, {0, 0, 0}));
 
   const TouchPlace touch{{1, 1, 1}, {0, 0, -1}, {0.6f, 0.8f, 0}};
