@@ -285,13 +285,21 @@ ScatteringAngles angles_of(std::span<const ScatteringAngles> bodies) {
   return std::ranges::any_of(bodies, differs) ? ScatteringAngles{.same = false} : bodies[0];
 }
 
-std::string phase_warning(const ScatteringAngles& angles, bool measured) {
-  if (angles.same && (measured || angles.g == glm::vec3(0))) return "";
+std::string phase_warning(const ScatteringAngles& angles, KnownAngles known) {
+  if (angles.same && (known == KnownAngles::measured || angles.g == glm::vec3(0))) return "";
+  const std::string where =
+      ", most in bodies that are thin or absorb much (docs/accuracy.md, \"Scattering that goes forwards\"), is not in "
+      "it";
+  if (angles.same && known == KnownAngles::swept) {
+    return "the stated error is that of sweeps, which know of the angles of scattering by two moments: what the others "
+           "change" +
+           where + "; at rest walks measure it";
+  }
   const std::string said =
-      "the stated error is that of sigma_s_prime = (1 - g) sigma_s: what the angles of scattering change besides, most "
-      "in bodies that are thin or absorb much (docs/accuracy.md, \"Scattering that goes forwards\"), is not in it";
-  return angles.same ? said + "; at rest, with the correction, walks measure it"
-                     : said + ", and walks measure it only where g is the same everywhere";
+      "the stated error is that of sigma_s_prime = (1 - g) sigma_s: what the angles of scattering change besides" +
+      where;
+  return angles.same ? said + "; sweeps know of them, and at rest walks measure what is left"
+                     : said + ", and sweeps and walks know of it only where g is the same everywhere";
 }
 
 void check_material(const gpu::Material& material) {

@@ -54,9 +54,13 @@ struct ScatteringAngles {
 ScatteringAngles angles_of(const gpu::Material& material);
 ScatteringAngles angles_of(std::span<const ScatteringAngles> bodies);
 
-// What is to be said of them, as the stated error knows of the reduced coefficient alone; `measured`: walks that know
-// of g do the rest, where it is the same everywhere. Empty where there is nothing.
-std::string phase_warning(const ScatteringAngles& angles, bool measured);
+// What a solution knows of them: the reduced coefficient alone, what sweeps do (shaders/shared/forward_scattering.h),
+// or that and from walks what is left.
+enum class KnownAngles { reduced, swept, measured };
+
+// What is to be said of what the stated error does not know of them; sweeps and walks do where they are the same
+// everywhere. Empty where there is nothing.
+std::string phase_warning(const ScatteringAngles& angles, KnownAngles known);
 
 // Throws InputError if a coefficient is out of range.
 void check_material(const gpu::Material& material);

@@ -24,7 +24,7 @@ std::string material_help() {
   return "a name (" + names +
          "); or sigma_s_prime=S,sigma_a=A,eta=E in 1/mm, one value or R/G/B each; or reflectance=C,mean_free_path=L: "
          "the colour that a thick body shows, below 1, and a length in mm; or sigma_s=S,g=G in place of sigma_s_prime: "
-         "scattering of mean cosine G, by similarity, of which g=G beside a sigma_s_prime lets the stated error know; "
+         "scattering of mean cosine G, which g=G beside a sigma_s_prime or a name says, too; "
          "or NAME,key=value; "
          "roughness=ALPHA of the surface; pattern=P,period=D,sharpness=K mixes in a second set, second_sigma_a and so "
          "on; "

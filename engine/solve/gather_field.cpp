@@ -6,6 +6,7 @@
 #include "engine/reference/vertex_starts.h"
 #include "interface/gather/gather_exitance.comp.h"
 #include "interface/gather/gather_first.comp.h"
+#include "interface/gather/gather_flow.comp.h"
 #include "interface/gather/gather_lacking.comp.h"
 #include "interface/gather/gather_nodes.comp.h"
 #include "interface/gather/gather_phi.comp.h"
@@ -55,11 +56,18 @@ void GatherField::make_room_corrected(device::Device& device, const Level& level
   lacking_ = {device, corners * vec3_bytes, device::Place::device, "gather/lacking first-scattered light"};
 }
 
+void GatherField::make_room_forward(device::Device& device, const Level& level) {
+  if (flows_.size() > 0) return;
+  const std::uint64_t flows = gpu::GATHER_FLOWS * std::uint64_t{level.vertex_count()};
+  flows_ = {device, flows * vec3_bytes, device::Place::device, "gather/flows"};
+}
+
 void GatherField::record(Workspace& work, const GatherInput& input) {
   record_body(work, input);
   record_points(work, input);
   record_uncollided(work, input);
   if (input.first) record_first(work, input);
+  if (input.forward != nullptr) record_flow(work, input);
   record_scale(work, input);
 }
 
@@ -75,7 +83,9 @@ void GatherField::record_single(Workspace& work, const GatherInput& input) {
 }
 
 void GatherField::record_body(Workspace& work, const GatherInput& input) {
-  write_solid(work.recorder.device(), {input.body, input.tree.ref(), normals_.address()});
+  gpu::ForwardLight forward{};
+  if (input.forward != nullptr) forward = {flows_.address(), input.forward->beside()};
+  write_solid(work.recorder.device(), {input.body, input.tree.ref(), normals_.address(), forward});
   input.tree.record(work, input.level);
   if (std::exchange(normals_behind_, false)) record_normals(work, input);
 }
@@ -146,6 +156,19 @@ void GatherField::record_first(Workspace& work, const GatherInput& input) {
   work.recorder.dispatch(
       work.passes.of(shader::gather_lacking), lacking, level.vertex_count, "gather first",
       lacking_.size() + 4 * level.tet_count * sizeof(glm::uvec4) + level.vertex_count * 3 * vec3_bytes);
+}
+
+void GatherField::record_flow(Workspace& work, const GatherInput& input) {
+  const LevelBuffers& level = input.level;
+  const gpu::GatherFlowPush push{.forward = input.forward->ref().address(),
+                                 .points = points_.address(),
+                                 .fluence = input.fluence.x,
+                                 .flux = input.forward->flux().address(),
+                                 .scale = work.scale.address(),
+                                 .flows = flows_.address()};
+  const std::uint64_t of_tets = 4 * level.tet_count * (sizeof(std::uint32_t) + 7 * FIXED_WORDS * sizeof(std::uint32_t));
+  work.recorder.dispatch(work.passes.of(shader::gather_flow), push, level.vertex_count, "gather first",
+                         of_tets + level.vertex_count * (sizeof(gpu::GatherPoint) + 10 * vec3_bytes));
 }
 
 void GatherField::record_scale(Workspace& work, const GatherInput& input) {

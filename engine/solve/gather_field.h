@@ -24,8 +24,9 @@ struct GatherInput {
   const BeamBuffers& beams;
   const device::Buffer& vertex_exitance;  // vec3 per surface vertex, W/mm^2
   gpu::BodyRef body;
-  BodyTree& tree;                         // of the level
-  std::optional<FirstScattered> first{};  // of a correction, whose exitance and fluence these are
+  BodyTree& tree;                              // of the level
+  std::optional<FirstScattered> first{};       // of a correction, whose exitance and fluence these are
+  const ForwardScattering* forward = nullptr;  // the same, where light scatters forwards
 };
 
 class GatherField {
@@ -35,6 +36,9 @@ class GatherField {
 
   // Room for a field of a correction. `level`: as above.
   void make_room_corrected(device::Device& device, const Level& level);
+
+  // The same where light scatters forwards.
+  void make_room_forward(device::Device& device, const Level& level);
 
   // The vertices of the level have moved.
   void moved() { normals_behind_ = true; }
@@ -61,11 +65,13 @@ class GatherField {
   void record_points(Workspace& work, const GatherInput& input);
   void record_uncollided(Workspace& work, const GatherInput& input);
   void record_first(Workspace& work, const GatherInput& input);
+  void record_flow(Workspace& work, const GatherInput& input);
   void record_scale(Workspace& work, const GatherInput& input);
   void record_nodes(Workspace& work, const GatherInput& input);
 
   device::Buffer start_, nearest_;  // engine/reference/vertex_starts.h
   device::Buffer solid_on_device_, normals_, points_, gathered_, nodes_, scale_;
+  device::Buffer flows_;    // of ForwardLight
   device::Buffer lacking_;  // vec3, at the corners of the tets, four each, W; of a correction alone
   gpu::SolidRef solid_{};
   bool normals_behind_ = true;

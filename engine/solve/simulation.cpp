@@ -40,7 +40,9 @@ void Simulation::set_material(const gpu::Material& material) {
 }
 
 void Simulation::set_angles(const ScatteringAngles& angles) {
+  const bool same = implementation_->coefficients.angles() == angles;
   implementation_->coefficients.set(angles);
+  if (!same) implementation_->disassemble();
 }
 
 void Simulation::set_optical(std::uint32_t level, std::span<const gpu::Optical> optical, float eta,
@@ -118,8 +120,9 @@ void Simulation::make_room(const SolveOptions& options, bool gather) {
 SolveReport Simulation::solve(const SolveOptions& options, const std::function<void()>& check,
                               const std::function<void(bool)>& light) {
   SolveReport report = implementation_->solve(options, check, light);
-  const bool measured = report.correction && !options.warm;
-  report.phase_warning = quadgraph::phase_warning(implementation_->coefficients.angles(), measured);
+  const KnownAngles by_sweeps = options.warm ? KnownAngles::swept : KnownAngles::measured;
+  const KnownAngles known = report.correction ? by_sweeps : KnownAngles::reduced;
+  report.phase_warning = quadgraph::phase_warning(implementation_->coefficients.angles(), known);
   if (!options.warm && report.correction) state_medium_error(options, report);
   return report;
 }

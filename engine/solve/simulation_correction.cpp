@@ -23,6 +23,9 @@ void Simulation::Implementation::correction_room(std::uint32_t points) {
   if (!correction) correction.emplace(device, shape.levels()[0]);
   correction->make_room(device, points);
   gather_room().make_room_corrected(device, shape.levels()[0]);
+  if (!goes_forward()) return;
+  correction->make_room_forward(device, shape.levels()[0]);
+  gather->make_room_forward(device, shape.levels()[0]);
 }
 
 void Simulation::Implementation::with_solution(const BodyBoundaries& boundaries,
@@ -60,8 +63,9 @@ void Simulation::Implementation::forget_other_material() {
   std::vector<gpu::Optical> now = optical_at(0);
   const bool another = std::max(extinction_change(corrected_optical, now),
                                 index_change(corrected_eta, refractions.eta())) > most_carried;
-  another ? correction->forget() : correction->edited();
+  another || goes_forward() || corrected_g != coefficients.angles().g ? correction->forget() : correction->edited();
   corrected_optical = std::move(now);
+  corrected_g = coefficients.angles().g;
   corrected_eta.assign(refractions.eta().begin(), refractions.eta().end());
   optical_changed = false;
 }
@@ -80,9 +84,11 @@ void Simulation::Implementation::correct(const OperatorKey& key, const SolveOpti
   const BodyBoundaries& boundaries = correction_boundaries();
   prepare_correction(boundaries);
   forget_other_material();
-  const Solved of_solve{levels[0], operators.at(key, 0), Method::fem,
-                        refractions.boundaries(Method::fem, Source::buried, key.model), &walks[0]};
-  const TransportParts transport{work, levels[0], beams, walks[0], gather->nearest(), *tree, report.inter_reflection};
+  const Solved of_solve{levels[0],   operators.at(key, 0),
+                        Method::fem, refractions.boundaries(Method::fem, Source::buried, key.model),
+                        &walks[0],   goes_forward() ? correction->forward().leaving().address() : 0};
+  const TransportParts transport{
+      work, levels[0], beams, walks[0], gather->nearest(), *tree, report.inter_reflection, coefficients.angles().g};
   const CorrectionParts parts{
       transport, operators, boundaries, of_solve, results, resolution_with(key.model).front().slow, check};
   report.correction = correction->run(parts, options, {Method::fem, coefficients.even(), options.mean_rays});

@@ -54,6 +54,7 @@ struct Simulation::Implementation {
   bool corrected = false;                         // the last solution is
   std::vector<gpu::Optical> corrected_optical;    // at the surface, of the last correction
   std::vector<float> corrected_eta;               // the same
+  glm::vec3 corrected_g{0};                       // the same
   bool optical_changed = true;                    // since then
   std::vector<PassStats> passes;                  // of the last solve
   bool scaled = false;                            // the scale is that of the present q
@@ -267,6 +268,8 @@ struct Simulation::Implementation {
   }
 
   void correction_room(std::uint32_t points);
+  bool corrected_forward() const { return corrected && corrected_g != glm::vec3(0); }  // the last solution
+  bool goes_forward() const { return coefficients.angles().g != glm::vec3(0); }
 
   GatherField& gather_room() {
     if (!tree) tree.emplace(device, shape.levels()[0], "gather");
@@ -311,9 +314,13 @@ struct Simulation::Implementation {
     if (gather_room(); gathers_now == what) return *gather;
     work.recorder.clear();
     walks[0].record_cells(work, levels[0]);
-    const auto body = walks[0].body(levels[0], coefficients.even());
+    gpu::BodyRef body = walks[0].body(levels[0], coefficients.even());
+    const bool forwards = corrected_forward() && what != Gather::single;
+    const ForwardScattering* forward = forwards ? &correction->forward() : nullptr;
+    if (forward != nullptr) body.optical = forward->optical().address();
     GatherInput input{levels[0], fluence(), beams, results.vertex_exitance(), body, *tree};
     if (corrected) input.first.emplace(correction->first());
+    input.forward = forward;
     what == Gather::single ? gather->record_single(work, input) : gather->record(work, input);
     work.recorder.submit();
     gather_passes = work.recorder.passes();
@@ -350,11 +357,18 @@ struct Simulation::Implementation {
     return field;
   }
 
+  // W per face.
+  std::vector<glm::dvec3> unscattered_power() const {
+    const glm::dvec3 unit(scale());
+    if (!corrected_forward()) return walks[0].unscattered_power(device, unit);
+    return powers(device::download<std::uint32_t>(device, correction->forward().leaving()), unit);
+  }
+
   // W/mm^2 per face.
   std::vector<glm::vec3> unscattered(std::span<const float> area) const {
     std::vector<glm::vec3> field(area.size(), glm::vec3(0));
     if (solved_source == Source::diffuse) return field;
-    const std::vector<glm::dvec3> power = walks[0].unscattered_power(device, glm::dvec3(scale()));
+    const std::vector<glm::dvec3> power = unscattered_power();
     for (std::size_t f = 0; f < area.size(); ++f) {
       if (area[f] > 0) field[f] = glm::vec3(power[f] / static_cast<double>(area[f]));
     }

@@ -166,10 +166,11 @@ void SurfaceResults::record_display(Workspace& work, const Solved& solved) {
 
 void SurfaceResults::record_vertex_unscattered(Workspace& work, const Solved& solved) {
   const LevelBuffers& level = solved.level;
+  const std::uint64_t unscattered = solved.unscattered != 0 ? solved.unscattered : solved.walk->unscattered().address();
   const gpu::VertexUnscatteredPush push{.face_area = face_area_.address(),
                                         .face_offset = level.face_offset.address(),
                                         .face_incidence = level.face_incidence.address(),
-                                        .unscattered = solved.walk->unscattered().address(),
+                                        .unscattered = unscattered,
                                         .scale = work.scale.address(),
                                         .factor = display_factor_.address(),
                                         .exitance = vertex_exitance_.address(),

@@ -18,7 +18,8 @@ struct Solved {
   const OperatorBuffers& op;
   Method method;
   const BodyBoundaries& boundaries;
-  const SourceWalk* walk;  // of the buried source, whose exitance is clipped; null for the diffuse one
+  const SourceWalk* walk;         // of the buried source, whose exitance is clipped; null for the diffuse one
+  std::uint64_t unscattered = 0;  // address, fixed point per face: what left so; 0: that of the walk
 };
 
 // Fluence at the carriers of a method: the first moment of what is solved for.

@@ -264,7 +264,7 @@ CorrectedSweep TransportCorrection::sweep(const CorrectionParts& parts, const Sa
   solves_noise_ = relative(found[1].noise, found[1].size);
   changed_ = relative(found[1].change, found[1].size);
   record_faces(parts);
-  samples_.record_step(parts.transport, right_side_, change_, shares);
+  samples_.record_step(parts.transport, right_side_, change_, shares, 1.0f / static_cast<float>(draws_));
   samples_.record_state(parts.transport);
   if (!std::isfinite(found[0].change.x) || !std::isfinite(found[0].noise.x) || !std::isfinite(found[0].size.x)) {
     throw SolverError("transport correction: met a value that is not finite");

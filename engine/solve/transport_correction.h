@@ -44,6 +44,9 @@ class TransportCorrection {
   // Room for draws of so many points, unless it is there.
   void make_room(device::Device& device, std::uint32_t points) { samples_.make_room(device, points); }
 
+  // The same for light that scatters forwards. `level`: as above.
+  void make_room_forward(device::Device& device, const Level& level) { samples_.make_room_forward(device, level); }
+
   // Sweeps from the solution, so many or until the error is what is wanted; with `options.warm` one of few samples that
   // goes on from what is known. Throws SolverError where a value is not finite, and what `check` throws.
   CorrectionReport run(const CorrectionParts& parts, const SolveOptions& options, const WalkTask& task);
@@ -65,7 +68,8 @@ class TransportCorrection {
   // faces, W/mm^2.
   const device::Buffer& fluence() const { return samples_.fluence(); }
   FirstScattered first() const { return samples_.first(); }
-  const device::Buffer& field() const { return samples_.field(); }  // TransportFieldRef, the body that rays see
+  const ForwardScattering& forward() const { return samples_.forward(); }  // of a run with it
+  const device::Buffer& field() const { return samples_.field(); }         // TransportFieldRef, the body that rays see
   const device::Buffer& exitance() const { return exitance_; }
 
   // Of the last run at rest, W/mm^2 per face, by each half of the samples alone.

@@ -9,12 +9,8 @@
 #include "interface/transport/transport_fluence.comp.h"
 #include "interface/transport/transport_leaving.comp.h"
 #include "interface/transport/transport_mass.comp.h"
-#include "interface/transport/transport_mean.comp.h"
 #include "interface/transport/transport_points.comp.h"
-#include "interface/transport/transport_smooth.comp.h"
 #include "interface/transport/transport_source.comp.h"
-#include "interface/transport/transport_step.comp.h"
-#include "interface/transport/transport_sweep.comp.h"
 #include "interface/transport/transport_totals.comp.h"
 #include "interface/transport/transport_walk.comp.h"
 #include "interface/transport/transport_weights.comp.h"
@@ -25,10 +21,6 @@ namespace {
 constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
 constexpr std::uint64_t sum_bytes = FIXED_WORDS * sizeof(std::uint32_t);
 constexpr std::uint32_t halves = gpu::TRANSPORT_HALVES;
-
-// Tets that a ray crosses, and what it reads in one; for the bytes.
-constexpr std::uint64_t tets_per_ray = 10;
-constexpr std::uint64_t segment_bytes = sizeof(gpu::TetCell) + sizeof(gpu::TetSource) + sizeof(gpu::Optical);
 
 // Rays a face of light whose directions are known. Fewer are an error that no sweep mends, in dark bodies the largest.
 constexpr std::uint32_t rays_at_rest = 16, rays_in_motion = 4;
@@ -41,11 +33,6 @@ constexpr std::uint32_t passes_between = 1000003, draws_between = 61;
 
 // Sums of each of the WALK_SUMS of what is gathered.
 constexpr std::uint32_t gather_sums = 4;
-
-// Of each tet at most one point more than it weighs is drawn: ten standard deviations of their number are left.
-std::uint32_t room_for(std::uint32_t points) {
-  return points + points / 8 + 1024;
-}
 
 }  // namespace
 
@@ -95,6 +82,10 @@ void TransportSamples::make_room(device::Device& device, std::uint32_t points) {
   points_ = {device, room * sizeof(gpu::TransportPoint), device::Place::device, "transport/points"};
 }
 
+void TransportSamples::make_room_forward(device::Device& device, const Level& level) {
+  if (!forward_) forward_.emplace(device, level);
+}
+
 void TransportSamples::make_room_apart(const TransportParts& parts) {
   if (source_apart_.size() > 0) return;
   device::Device& device = parts.work.recorder.device();
@@ -103,13 +94,17 @@ void TransportSamples::make_room_apart(const TransportParts& parts) {
 }
 
 void TransportSamples::write_field(const TransportParts& parts, const WalkTask& task, bool apart) {
-  const gpu::TransportFieldRef field{.body = parts.walk.body(parts.level, task.even),
+  gpu::BodyRef body = parts.walk.body(parts.level, task.even);
+  body.optical = optical(parts).address();
+  const gpu::TransportFieldRef field{.body = body,
                                      .tree = parts.tree.ref(),
                                      .sources = sources_.address(),
                                      .sky = parts.level.sky.address(),
                                      .segments = segments_.address(),
                                      .source_before = apart ? source_apart_.address() : 0,
                                      .optical_before = apart ? optical_before_.address() : 0,
+                                     .flows = parts.forward() ? forward_->flows().address() : 0,
+                                     .beside = parts.forward() ? forward_->beside() : gpu::BesidePeak{},
                                      .even_before = even_before_ ? 1u : 0u,
                                      .outside = parts.outside ? 1u : 0u};
   device::write_bytes(parts.work.recorder.device(), field_, std::as_bytes(std::span(&field, 1)));
@@ -119,12 +114,17 @@ void TransportSamples::record_start(const TransportParts& parts, const WalkTask&
                                     const TransportShares& shares) {
   Workspace& work = parts.work;
   if (shares.apart) make_room_apart(parts);
+  if (parts.forward()) forward_->record_start(forward_parts(parts), parts.g);
   write_field(parts, task, shares.apart);
   parts.tree.record(work, parts.level);
   work.recorder.fill(segments_, 0);
   record_walk(parts, task);
   record_mass(parts);
   record_fluence(parts, op, {.keep = shares.ahead ? 1.0f : 0.0f, .taken = 0, .swept = 0});
+  if (parts.forward()) {
+    forward_->record_sooner(forward_parts(parts), parts.walk, mass_, fluence_, 1);
+    forward_->record_flux(forward_parts(parts), fluence_, shares.ahead);
+  }
   record_weights(parts);
 }
 
@@ -154,7 +154,7 @@ void TransportSamples::record_mass(const TransportParts& parts) {
   const LevelBuffers& level = parts.level;
   const gpu::TransportMassPush push{.vertices = level.vertices.address(),
                                     .tets = level.tets.address(),
-                                    .optical = level.optical.address(),
+                                    .optical = optical(parts).address(),
                                     .tet_offset = tet_offset_.address(),
                                     .tet_incidence = tet_incidence_.address(),
                                     .mass = mass_.address(),
@@ -175,6 +175,8 @@ void TransportSamples::record_walk(const TransportParts& parts, const WalkTask& 
                               .scale = work.scale.address(),
                               .deposit = deposit_.address(),
                               .sums = walk_sums_.address(),
+                              .towards = parts.forward() ? forward_->towards().address() : 0,
+                              .leaving = parts.forward() ? forward_->leaving().address() : 0,
                               .rays = 1,
                               .sky = 0,
                               .first = 0,
@@ -229,7 +231,7 @@ void TransportSamples::record_source(const TransportParts& parts, const Transpor
   const LevelBuffers& level = parts.level;
   const gpu::TransportSourcePush push{.vertices = level.vertices.address(),
                                       .tets = level.tets.address(),
-                                      .optical = level.optical.address(),
+                                      .optical = optical(parts).address(),
                                       .fluence = fluence_.address(),
                                       .deposit = deposit_.address(),
                                       .fluence_before = fluence_before_.address(),
@@ -249,6 +251,9 @@ void TransportSamples::record_source(const TransportParts& parts, const Transpor
                          "transport source",
                          4 * fluence_.size() + deposit_.size() + 3 * source_before_.size() +
                              level.tet_count * (sizeof(glm::uvec4) + 8 * vec3_bytes));
+  if (parts.forward()) {
+    forward_->record_flow(forward_parts(parts), shares.present, shares.before);
+  }
 }
 
 void TransportSamples::begin_seeds(std::uint32_t seed) {
@@ -275,6 +280,7 @@ void TransportSamples::record_exitance(const TransportParts& parts, std::uint32_
 void TransportSamples::record_no_load(const TransportParts& parts) {
   parts.work.recorder.fill(point_sums_, 0);
   parts.work.recorder.fill(load_, 0);
+  if (parts.forward()) forward_->record_nothing_found(forward_parts(parts));
   record_totals(parts);
 }
 
@@ -292,19 +298,7 @@ void TransportSamples::record_draw(const TransportParts& parts, std::uint32_t di
                                         .room = room_};
   work.recorder.dispatch(work.passes.of(shader::transport_points), points, parts.level.tet_count, "transport points",
                          weights_.size() + points_.size());
-  const gpu::TransportSweepPush sweep{.field = field_.address(),
-                                      .drawn = drawn_.address(),
-                                      .points = points_.address(),
-                                      .fluence = fluence_seen_.address(),
-                                      .fluence_before = fluence_apart_.address(),
-                                      .sums = point_sums_.address(),
-                                      .load = load_.address(),
-                                      .room = room_,
-                                      .directions = directions,
-                                      .vertex_count = parts.level.vertex_count,
-                                      .seed = seed_};
-  work.recorder.dispatch(work.passes.of(shader::transport_sweep), sweep, room_for(wanted), "transport sweep",
-                         std::uint64_t{wanted} * directions * tets_per_ray * segment_bytes);
+  record_sweep(parts, directions, wanted);
 }
 
 void TransportSamples::record_totals(const TransportParts& parts) {
@@ -312,7 +306,7 @@ void TransportSamples::record_totals(const TransportParts& parts) {
   const LevelBuffers& level = parts.level;
   const gpu::TransportTotalsPush totals{.vertices = level.vertices.address(),
                                         .tets = level.tets.address(),
-                                        .optical = level.optical.address(),
+                                        .optical = optical(parts).address(),
                                         .fluence = fluence_.address(),
                                         .source = source_before_.address(),
                                         .books = books_.address(),
@@ -342,41 +336,6 @@ void TransportSamples::record_books(const TransportParts& parts, float share, fl
                                      .keep = known};
   work.recorder.dispatch(work.passes.of(shader::transport_books), push, 1, "transport books",
                          point_sums_.size() + gather_sums_.size());
-}
-
-void TransportSamples::record_smooth(const TransportParts& parts, const device::Buffer* mass,
-                                     const device::Buffer& from, const device::Buffer& to) {
-  Workspace& work = parts.work;
-  const LevelBuffers& level = parts.level;
-  const gpu::TransportSmoothPush push{.vertices = level.vertices.address(),
-                                      .tets = level.tets.address(),
-                                      .tet_offset = tet_offset_.address(),
-                                      .tet_incidence = tet_incidence_.address(),
-                                      .mass = mass == nullptr ? 0 : mass->address(),
-                                      .from = from.address(),
-                                      .to = to.address(),
-                                      .count = level.vertex_count};
-  work.recorder.dispatch(work.passes.of(shader::transport_smooth), push, level.vertex_count, "transport step",
-                         4 * level.tet_count * (sizeof(glm::uvec4) + 8 * vec3_bytes));
-}
-
-void TransportSamples::record_step(const TransportParts& parts, const std::array<device::Buffer, 2>& load,
-                                   const std::array<device::Buffer, 2>& change, const TransportShares& shares) {
-  Workspace& work = parts.work;
-  const std::uint32_t count = parts.level.vertex_count;
-  const gpu::TransportMeanPush mean{load[0].address(), load[1].address(), swept_[0].address(), count};
-  work.recorder.dispatch(work.passes.of(shader::transport_mean), mean, count, "transport step", 3 * count * vec3_bytes);
-  record_smooth(parts, &mass_, swept_[0], swept_[1]);
-  record_smooth(parts, nullptr, swept_[1], swept_[0]);
-  const gpu::TransportStepPush step{.swept = swept_[0].address(),
-                                    .change_a = change[0].address(),
-                                    .change_b = change[1].address(),
-                                    .books = books_.address(),
-                                    .fluence = fluence_.address(),
-                                    .added = added_.address(),
-                                    .count = count,
-                                    .adds = shares.adds ? 1.0f : 0.0f};
-  work.recorder.dispatch(work.passes.of(shader::transport_step), step, count, "transport step", 7 * count * vec3_bytes);
 }
 
 }  // namespace quadgraph

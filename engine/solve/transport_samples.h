@@ -4,9 +4,11 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "engine/solve/beams.h"
 #include "engine/solve/body_tree.h"
+#include "engine/solve/forward_scattering.h"
 #include "engine/solve/source_walk.h"
 #include "engine/solve/surface_results.h"
 #include "engine/solve/workspace.h"
@@ -23,6 +25,9 @@ struct TransportParts {
   const device::Buffer& nearest;  // surface vertex of each vertex (engine/reference/vertex_starts.h)
   BodyTree& tree;
   bool outside = false;  // light that leaves may enter again elsewhere
+  glm::vec3 g{0};        // mean cosine of the angle by which light scatters
+
+  bool forward() const { return g != glm::vec3(0); }
 };
 
 // What samples see is a share of the present field, less one of the field before; what they find is added to a share of
@@ -56,6 +61,9 @@ class TransportSamples {
 
   // Room for so many points at a time, unless it is there.
   void make_room(device::Device& device, std::uint32_t points);
+
+  // Room for light that scatters forwards, unless it is there. `level`: as above.
+  void make_room_forward(device::Device& device, const Level& level);
 
   // The field of a solve: walks the light, takes the fluence of `op`, weighs the tets. With `shares.ahead` it has what
   // sweeps added to the solution before; with `shares.apart` samples will see the field before by itself.
@@ -91,14 +99,12 @@ class TransportSamples {
   void begin_seeds(std::uint32_t seed);
 
   // A step of the fluence: what both halves of a load say of it, over the mass and smoothed, and the mean of two
-  // changes.
+  // changes; of the flux too, where draws of which so much counts have found it.
   void record_step(const TransportParts& parts, const std::array<device::Buffer, 2>& load,
-                   const std::array<device::Buffer, 2>& change, const TransportShares& shares);
+                   const std::array<device::Buffer, 2>& change, const TransportShares& shares, float share);
 
   // Takes so much of what all steps have changed of the fluence of `op`.
-  void record_taken(const TransportParts& parts, const OperatorBuffers& op, double share) {
-    record_fluence(parts, op, {.keep = 0, .taken = static_cast<float>(share), .swept = 1});
-  }
+  void record_taken(const TransportParts& parts, const OperatorBuffers& op, double share);
 
   // What the points of either half are missing, after draws of which so much counts; `known` is the share of what they
   // found before.
@@ -108,6 +114,8 @@ class TransportSamples {
 
   const device::Buffer& field() const { return field_; }  // TransportFieldRef, of the last start
 
+  const ForwardScattering& forward() const { return *forward_; }  // of a start with it
+
   FirstScattered first() const { return {deposit_, mass_, tet_offset_, tet_incidence_}; }
 
   const device::Buffer& fluence() const { return fluence_; }    // vec3 per vertex, scaled; to be corrected
@@ -116,6 +124,14 @@ class TransportSamples {
   const device::Buffer& unit() const { return unit_; }          // vec3: the scale of what was known
 
  private:
+  // Tets that a ray crosses, and what it reads in one, and of light that scatters forwards besides; for the bytes.
+  static constexpr std::uint64_t tets_per_ray = 10;
+  static constexpr std::uint64_t segment_bytes = sizeof(gpu::TetCell) + sizeof(gpu::TetSource) + sizeof(gpu::Optical);
+  static constexpr std::uint64_t flow_bytes = gpu::FLOWS * sizeof(glm::vec3);
+
+  // Of each tet at most one point more than it weighs is drawn: ten standard deviations of their number are left.
+  static std::uint32_t room_for(std::uint32_t points) { return points + points / 8 + 1024; }
+
   void write_field(const TransportParts& parts, const WalkTask& task, bool apart);
   void make_room_apart(const TransportParts& parts);
   void record_walk(const TransportParts& parts, const WalkTask& task);
@@ -126,11 +142,20 @@ class TransportSamples {
   };
   void record_fluence(const TransportParts& parts, const OperatorBuffers& op, const FluenceShares& shares);
   void record_mass(const TransportParts& parts);
-  void record_smooth(const TransportParts& parts, const device::Buffer* mass, const device::Buffer& from,
-                     const device::Buffer& to);
+  void record_smooth(const TransportParts& parts, std::uint64_t mass, std::uint64_t from, std::uint64_t to);
+  void record_flux_step(const TransportParts& parts, const std::array<device::Buffer, 2>& change,
+                        const TransportShares& shares, float share);
+  ForwardParts forward_parts(const TransportParts& parts) const {
+    return {parts.work, parts.level, deposit_, tet_offset_, tet_incidence_, unit_};
+  }
+  // As rays see them.
+  const device::Buffer& optical(const TransportParts& parts) const {
+    return parts.forward() ? forward_->optical() : parts.level.optical;
+  }
   void record_totals(const TransportParts& parts);
   glm::dvec3 share_again() const;
   void record_optical(const TransportParts& parts);
+  void record_sweep(const TransportParts& parts, std::uint32_t directions, std::uint32_t wanted);
 
   std::uint32_t points_wanted_ = 0, room_ = 0;
   std::uint32_t seed_ = 0;  // of what was recorded last
@@ -149,7 +174,8 @@ class TransportSamples {
   device::Buffer load_, gathered_;
   device::Buffer tet_offset_, tet_incidence_, mass_;  // tets around each vertex
   device::Buffer point_sums_, books_;
-  std::array<device::Buffer, 2> swept_;  // vec3 per vertex
+  std::array<device::Buffer, 2> swept_;       // vec3 per vertex
+  std::optional<ForwardScattering> forward_;  // made at first use
   device::Buffer segments_, walk_sums_, gather_sums_, segments_on_host_, walk_sums_on_host_, books_on_host_;
 };
 

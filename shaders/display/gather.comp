@@ -12,6 +12,7 @@ SurfaceScene scene;
 #define TREE_BODY scene.solid.body
 #define TREE scene.solid.tree
 #define NORMALS scene.solid.normals
+#define FORWARD_LIGHT scene.solid.forward
 #define POINTS scene.points
 #include "gather/leaving.glsl"
 

@@ -1,11 +1,15 @@
 // Radiance gathered along a view ray, and its scale. The shader that includes it defines
 // first BODY and POINTS (gather_fields.glsl) and
-//   NORMALS  where those of the smooth surface are, e.g. those of a SolidRef
+//   NORMALS        where those of the smooth surface are, e.g. those of a SolidRef
+//   FORWARD_LIGHT  where the ForwardLight is, the same
 #ifndef QUADGRAPH_GATHER_GLSL
 #define QUADGRAPH_GATHER_GLSL
 
 #ifndef NORMALS
 #error "gather.glsl: NORMALS is not defined"
+#endif
+#ifndef FORWARD_LIGHT
+#error "gather.glsl: FORWARD_LIGHT is not defined"
 #endif
 
 #include "gather/gather_fields.glsl"
@@ -86,17 +90,43 @@ vec3 keep(inout Escape most, inout Escape second, Escape other) {
   return least;
 }
 
+bool scatters_forwards() {
+  return uvec2(FORWARD_LIGHT.flows) != uvec2(0);
+}
+
+// Light of which a point of a tet scatters as much against a ray of that direction as it would evenly.
+LocalLight light_against(TetPoint at, vec3 direction) {
+  LocalLight light = fields_at(at.tet, at.l);
+  if (!scatters_forwards()) return light;
+  uvec4 ids = BODY.tets.at[at.tet];
+  mat3 flow = mat3(0.0), ways = mat3(0.0);
+  for (uint k = 0u; k < 4u; ++k) {
+    uint first = GATHER_FLOWS * ids[k];
+    for (uint axis = 0u; axis < 3u; ++axis) {
+      flow[axis] += at.l[k] * FORWARD_LIGHT.flows.at[first + axis];
+      ways[axis] += at.l[k] * FORWARD_LIGHT.flows.at[first + 3u + axis];
+    }
+  }
+  vec3 straight = sqrt(ways[0] * ways[0] + ways[1] * ways[1] + ways[2] * ways[2]), along = -(ways * direction);
+  vec3 beyond = straight * beyond_linear(FORWARD_LIGHT.beside, along / max(straight, vec3(1e-6)));
+  vec3 factor = max(1.0 + 3.0 * cosine_beside_peak(FORWARD_LIGHT.beside.g) * along + beyond, vec3(0));
+  light.phi -= flow * direction;
+  light.entry *= factor;
+  light.uncollided *= factor;
+  return light;
+}
+
 // One step of transport: collided and uncollided fluence scattered into a ray that goes from its point into the body.
 Gathered gather(TetPoint at, vec3 direction) {
   Gathered sum = Gathered(vec3(0), vec3(0), NO_ESCAPE, NO_ESCAPE);
   vec3 left = vec3(1);
-  LocalLight here = fields_at(at.tet, at.l);
+  LocalLight here = light_against(at, direction);
   for (uint step = 0u; step < GATHER_STEPS; ++step) {
     Exit exit = find_exit(at, direction);
     if (!exit.found) break;
     Optical optical = optical_in(at.tet);
     at.l = exit_point(at, exit);
-    LocalLight there = fields_at(at.tet, at.l);
+    LocalLight there = light_against(at, direction);
     vec3 lost, fluence = fluence_along(here, there, extinction(optical) * exit.path, lost);
     vec3 last = left * optical.sigma_s_prime * (exit.path / FOUR_PI) * fluence;
     sum.radiance += last;
@@ -125,6 +155,7 @@ Gathered gather(TetPoint at, vec3 direction) {
     } else {
       direction = normalize(direction - 2.0 * dot(direction, n) * n);
     }
+    if (scatters_forwards()) here = light_against(at, direction);
   }
   sum.radiance += left * even_radiance(at.tet, here);
   return sum;

@@ -1,5 +1,5 @@
 // Light that leaves a body along a view ray, and what is seen through it. The shader that
-// includes it defines first POINTS (gather_fields.glsl), NORMALS (gather.glsl) and BODY, TREE and TREE_BODY
+// includes it defines first POINTS (gather_fields.glsl), NORMALS and FORWARD_LIGHT (gather.glsl) and BODY, TREE and TREE_BODY
 // (face_tree.glsl), which belong together.
 #ifndef QUADGRAPH_LEAVING_GLSL
 #define QUADGRAPH_LEAVING_GLSL

@@ -23,6 +23,7 @@ SolidRef solid;
 #define TREE_BODY solid.body
 #define TREE solid.tree
 #define NORMALS solid.normals
+#define FORWARD_LIGHT solid.forward
 #define POINTS push.points
 #include "gather/leaving.glsl"
 

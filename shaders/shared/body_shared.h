@@ -2,6 +2,7 @@
 #ifndef QUADGRAPH_BODY_SHARED_H
 #define QUADGRAPH_BODY_SHARED_H
 
+#include "shared/forward_scattering.h"
 #include "shared/refraction.h"
 
 #ifdef __cplusplus
@@ -12,6 +13,9 @@ namespace quadgraph::gpu {
 // each corner j < 3 two bits from 2 j on: its place in the tet across, for k that of the new vertex. The place of
 // corner 3 is the one that is left.
 #define CROSSING_BITS 6
+
+// Of ForwardLight: first the flux, then the direction.
+const uint GATHER_FLOWS = 6u;
 
 const uint BODY_EVEN = 1u;  // the coefficients are the same everywhere
 
@@ -58,11 +62,19 @@ struct TreeRef {
   uint leaf_count;
 };
 
+// Light at the vertices of a body that scatters forwards, by channel: along x, y and z three times what counts of the
+// flux of scattered light, W/mm^2, and the mean direction of light that has not scattered, at most of length 1.
+struct ForwardLight {
+  QG_REF(Vec3s) flows;  // GATHER_FLOWS per vertex; null where light scatters evenly
+  BesidePeak beside;
+};
+
 // A body, the tree over its faces, and the smooth surface that these stand for.
 struct SolidRef {
   BodyRef body;
   TreeRef tree;
   QG_REF(Vec3s) normals;  // three per face, unit: at its corners
+  ForwardLight forward;
 };
 
 #ifndef __cplusplus

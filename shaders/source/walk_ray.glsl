@@ -1,5 +1,7 @@
 // One ray of the buried source through the tets. The shader that includes it defines first BODY (tet_ray.glsl) and push
-// constants `push`, which have deposit and deposits as WalkSourcePush does, and defines meet_surface behind it.
+// constants `push`, which have deposit and deposits as WalkSourcePush does, and defines meet_surface behind it. It may
+// define
+//   WALK_TOWARDS  where power is added up by its direction, as TransportForwardRef has it; or null
 #ifndef QUADGRAPH_WALK_RAY_GLSL
 #define QUADGRAPH_WALK_RAY_GLSL
 
@@ -34,6 +36,16 @@ void scatter(TetPoint at, vec3 power, vec4 l, vec3 place, inout Scattered pendin
   }
 }
 
+// Power that a ray scatters for the first time in its tet, by its direction.
+void scatter_along(Ray ray, vec3 power) {
+#ifdef WALK_TOWARDS
+  if (uvec2(WALK_TOWARDS) == uvec2(0)) return;
+  for (uint axis = 0u; axis < 3u; ++axis) {
+    add_power(WALK_TOWARDS, 3u * ray.at.tet + axis, (0.5 + 0.5 * clamp(ray.direction[axis], -1.0, 1.0)) * power);
+  }
+#endif
+}
+
 // What the present tet takes from the ray: the exact integral of sigma_s' e^-tau against the basis functions along the
 // way to `l`, the rest absorbed.
 void cross_tet(inout Ray ray, Optical optical, float length, vec4 l, inout Scattered pending) {
@@ -48,6 +60,7 @@ void cross_tet(inout Ray ray, Optical optical, float length, vec4 l, inout Scatt
   vec3 scattered = taken * albedo(optical);
   absorbed += taken - scattered;
   scatter(ray.at, scattered, l, place, pending);
+  scatter_along(ray, scattered);
 }
 
 // Leaves all power at the ray's point; in a clear channel it counts as unscattered.
@@ -59,6 +72,7 @@ void end_here(Ray ray, inout Scattered pending) {
   absorbed += kept - scattered;
   unscattered += ray.power - kept;
   scatter(ray.at, scattered, ray.at.l, vec3(0), pending);
+  scatter_along(ray, scattered);
 }
 
 // Adds what is pending for a vertex to its deposit.

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "source/walk_shared.h"
+#include "shared/forward_scattering.h"
 #include "transport/transport_shared.h"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
@@ -71,10 +72,11 @@ void meet_surface(inout Ray ray, uint face) {
   ray.direction = normalize(ray.direction - 2.0 * cosine * n);
 }
 
-// sigma_s, not reduced, and sigma_a, 1/mm.
+// sigma_s, all of it, and sigma_a, 1/mm; the body of the rays has it without the forward peak.
 vec2 coefficients_in(uint tet, uint channel) {
   Optical optical = optical_in(tet);
-  return vec2(optical.sigma_s_prime[channel] / (1.0 - push.g[channel]), optical.sigma_a[channel]);
+  vec3 sigma_s = optical.sigma_s_prime / (1.0 - forward_peak(push.g));
+  return vec2(sigma_s[channel], optical.sigma_a[channel]);
 }
 
 // After a path through the present tet.

@@ -38,6 +38,10 @@ bool sees_before() {
   return uvec2(FIELD.source_before) != uvec2(0);
 }
 
+bool goes_forward() {
+  return uvec2(FIELD.flows) != uvec2(0);
+}
+
 Ray ray_from(TetPoint at, vec3 direction, uint state) {
   return Ray(at, direction, vec3(1), vec3(sees_before() ? 1.0 : 0.0), state, 0u);
 }
@@ -56,9 +60,35 @@ vec3 source_before_at(uint tet, vec4 l) {
   return source;
 }
 
-vec3 source_at(uint tet, vec4 l) {
-  vec4 source = l.x * FIELD.sources.at[tet].source_0 + l.y * FIELD.sources.at[tet].source_1 +
-                l.z * FIELD.sources.at[tet].source_2 + l.w * FIELD.sources.at[tet].source_3;
+// Along x, y and z, times a direction of travel.
+vec3 flow_along(uint at, vec3 travels) {
+  return travels.x * FIELD.flows.at[at] + travels.y * FIELD.flows.at[at + 1u] + travels.z * FIELD.flows.at[at + 2u];
+}
+
+// By how much a tet scatters more for the first time in a direction than its flows say, as a share of what it scatters.
+vec3 first_beyond(uint at, vec3 travels) {
+  vec3 x = FIELD.flows.at[at], y = FIELD.flows.at[at + 1u], z = FIELD.flows.at[at + 2u];
+  vec3 straight = sqrt(x * x + y * y + z * z);
+  return straight * beyond_linear(FIELD.beside, flow_along(at, travels) / max(straight, vec3(1e-6)));
+}
+
+// What a tet scatters at its corners in a direction of travel.
+TetSource light_of(uint tet, vec3 travels) {
+  TetSource light = FIELD.sources.at[tet];
+  if (!goes_forward()) return light;
+  uint at = FLOWS * tet, first = at + FLOWS_FIRST;
+  vec3 a = FIELD.flows.at[first], b = FIELD.flows.at[first + 1u], c = FIELD.flows.at[first + 2u],
+       d = FIELD.flows.at[first + 3u], more = vec3(0);
+  if (a != vec3(0) || b != vec3(0) || c != vec3(0) || d != vec3(0)) more = first_beyond(at + FLOWS_DIRECTION, travels);
+  light.source_0 += vec4(flow_along(at, travels) + more * a, 0.0);
+  light.source_1 += vec4(flow_along(at + 3u, travels) + more * b, 0.0);
+  light.source_2 += vec4(flow_along(at + 6u, travels) + more * c, 0.0);
+  light.source_3 += vec4(flow_along(at + 9u, travels) + more * d, 0.0);
+  return light;
+}
+
+vec3 at_place(TetSource light, vec4 l) {
+  vec4 source = l.x * light.source_0 + l.y * light.source_1 + l.z * light.source_2 + l.w * light.source_3;
   return source.xyz;
 }
 
@@ -86,7 +116,8 @@ Way across_tet(inout Ray ray, inout vec3 sum, inout vec3 before) {
   float path = exit.found ? exit.path : 0.0;
   uint tet = ray.at.tet;
   vec4 start = ray.at.l, end = exit_point(ray.at, exit);
-  add_source(source_at(tet, start), source_at(tet, end), extinction(optical_in(tet)), path, sum, ray.left);
+  TetSource light = light_of(tet, -ray.direction);
+  add_source(at_place(light, start), at_place(light, end), extinction(optical_in(tet)), path, sum, ray.left);
   if (sees_before()) {
     add_source(source_before_at(tet, start), source_before_at(tet, end), extinction(optical_before(tet)), path,
                before, ray.left_before);

@@ -4,6 +4,7 @@
 #define QUADGRAPH_TRANSPORT_SHARED_H
 
 #include "shared/body_shared.h"
+#include "shared/forward_scattering.h"
 #include "solver/solve_shared.h"
 
 #ifdef __cplusplus
@@ -49,6 +50,13 @@ QG_ARRAY(TetSources, TetSource);
 
 #endif
 
+// What a tet that scatters forwards has for rays, by channel, W/mm^3: at each of its corners what goes along x, y and
+// z, whose sum by a direction of travel comes on top of the source; at each what it scatters for the first time; and
+// the mean direction of that light, along x, y and z, at most of length 1.
+const uint FLOWS = 19u;
+const uint FLOWS_FIRST = 12u;
+const uint FLOWS_DIRECTION = 16u;
+
 // What rays see: the body, and the light that it scatters. Where the coefficients have changed, also the field before,
 // with those that it had: the same rays see both.
 struct TransportFieldRef {
@@ -59,8 +67,25 @@ struct TransportFieldRef {
   QG_REF(Uints) segments;       // tets crossed by all rays so far, one
   QG_REF(Vec3s) source_before;  // light that the field before scatters, four per tet, W/mm^3; or null
   QG_REF(Opticals) optical_before;
-  uint even_before;  // 1: optical_before is the same everywhere
-  uint outside;      // 1: light that leaves may enter again elsewhere
+  QG_REF(Vec3s) flows;  // FLOWS per tet, where light scatters forwards; or null
+  BesidePeak beside;    // the same
+  uint even_before;     // 1: optical_before is the same everywhere
+  uint outside;         // 1: light that leaves may enter again elsewhere
+};
+
+// What the passes of light that scatters forwards have in common (forward_scattering.h).
+struct TransportForwardRef {
+  QG_REF(Vec3s) vertices;
+  QG_REF(Uvec4s) tets;
+  QG_REF(Opticals) optical;  // of transport_optical.comp: per tet, or one
+  QG_REF(Uints) tet_offset;  // tets around each vertex
+  QG_REF(Uints) tet_incidence;
+  QG_REF(Uints) deposit;  // fixed point, at the corners of the tets, four each: power scattered for the first time
+  QG_REF(Uints) towards;  // fixed point, three per tet: that times half of 1 and the direction of travel
+  BesidePeak beside;
+  uint vertex_count;
+  uint tet_count;
+  uint even;  // 1: optical is the same everywhere
 };
 
 // Where the power of a sweep goes, W, scaled.
@@ -86,6 +111,7 @@ struct TransportChange {
 
 #ifndef __cplusplus
 QG_ARRAY(TransportFieldRefs, TransportFieldRef);
+QG_ARRAY(TransportForwardRefs, TransportForwardRef);
 QG_ARRAY(TransportBooks, TransportBook);
 QG_ARRAY(TransportChanges, TransportChange);
 QG_ARRAY(TransportPoints, TransportPoint);

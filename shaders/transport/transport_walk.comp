@@ -14,6 +14,8 @@ struct TransportWalkPush {
   Scales scale;
   Uints deposit;  // fixed point, four per tet: power scattered for the first time
   Uints sums;     // fixed point, WALK_SUMS times TRANSPORT_WALK_SUMS: absorbed; left, or under way at the end; entered again; entered
+  Uints towards;  // fixed point, as of TransportForwardRef; null where light scatters evenly
+  Uints leaving;  // fixed point, per face: power that leaves unscattered; the same
   uint rays;      // a face; a multiple of FACE_QUARTERS where the beam has directions
   uint sky;       // 1: the beam is ambient light or an environment
   uint first;     // number of the first ray of the first face
@@ -24,8 +26,14 @@ layout(push_constant, scalar) uniform Block { TransportWalkPush push; };
 TransportFieldRef field;
 #define FIELD field
 #define BODY field.body
+#define WALK_TOWARDS push.towards
 #include "source/walk_ray.glsl"
 #include "transport/entering_light.glsl"
+
+void leave(uint face, vec3 power) {
+  unscattered += power;
+  if (uvec2(push.leaving) != uvec2(0)) add_power(push.leaving, face, power);
+}
 
 void meet_surface(inout Ray ray, uint face) {
   vec3 n = outward_normal(face);
@@ -34,10 +42,10 @@ void meet_surface(inout Ray ray, uint face) {
     float eta = eta_behind(BODY.face_kinds, face), reflected = internal_reflectance(cosine, eta);
     if (!sees_body(face)) {
       vec3 kept = ray.power * reflected;
-      unscattered += ray.power - kept;
+      leave(face, ray.power - kept);
       ray.power = kept;
     } else if (uniform_number(state) >= reflected) {
-      unscattered += ray.power;
+      leave(face, ray.power);
       vec3 point = in_space(ray.at);
       ray.power *= enter_again(through_air(face, point, leaving_direction(ray.direction, n, cosine, eta), state), ray);
       entered_again += ray.power;

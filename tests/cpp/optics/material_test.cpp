@@ -137,16 +137,17 @@ TEST_CASE("a material keeps the mean cosine by which it was reduced, and says wh
   CHECK(skin.sigma_s_prime == parse_material("skin1").sigma_s_prime);
   CHECK(known == ScatteringAngles{.g = glm::vec3(0.8f)});
   CHECK(none == ScatteringAngles{});
-  CHECK(phase_warning(known, true).empty());
-  CHECK(phase_warning(known, false).find("at rest") != std::string::npos);
-  CHECK(phase_warning(none, false).empty());
+  CHECK(phase_warning(known, KnownAngles::measured).empty());
+  CHECK(phase_warning(known, KnownAngles::reduced).find("sweeps know") != std::string::npos);
+  CHECK(phase_warning(known, KnownAngles::swept).find("two moments") != std::string::npos);
+  CHECK(phase_warning(none, KnownAngles::reduced).empty());
   const ScatteringAngles both = angles_of(parse_material("marble-veins,g=0.8,second_g=0.8"));
   CHECK(angles_of(std::vector{both, known}) == known);
   CHECK(angles_of(std::vector{none, none}) == none);
   for (const ScatteringAngles& different :
        {angles_of(parse_material("marble-veins,g=0.5")), angles_of(std::vector{known, none})}) {
     CHECK(different == ScatteringAngles{.same = false});
-    CHECK(phase_warning(different, true).find("the same everywhere") != std::string::npos);
+    CHECK(phase_warning(different, KnownAngles::measured).find("the same everywhere") != std::string::npos);
   }
   gpu::Material wrong = skin;
   wrong.g = glm::vec3(0, 1, 0);

@@ -26,6 +26,7 @@ STUDIES = {
     "sphere": "sphere",
     "half-space": "half_space",
     "similarity": "similarity",
+    "forward": "forward",
     "cutoff": "cutoff",
     "orders": "orders",
     "coarse": "coarse",
@@ -46,7 +47,7 @@ STUDIES = {
 }
 
 _WIDE = (
-    *("dense", "similarity", "cutoff", "unseen", "pictures"),
+    *("dense", "similarity", "forward", "cutoff", "unseen", "pictures"),
     *("converging", "certificate", "acquire", "volume", "veined"),
 )
 _TABLE_WIDTH = 190  # characters, than which the tables of these cannot be read narrower
@@ -54,6 +55,7 @@ _TABLE_WIDTH = 190  # characters, than which the tables of these cannot be read 
 # Studies of real bodies, which the CPU reference cannot stand in for, because only the engine does what they judge.
 ON_ENGINE = {
     "dense": "makes its exitance even",
+    "forward": "is corrected by sweeps",
     "scenes": "makes pictures",
     "estimate": "estimates its error",
     "target": "stops at an error",
