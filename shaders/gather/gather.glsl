@@ -108,8 +108,8 @@ LocalLight light_against(TetPoint at, vec3 direction) {
     }
   }
   vec3 straight = sqrt(ways[0] * ways[0] + ways[1] * ways[1] + ways[2] * ways[2]), along = -(ways * direction);
-  vec3 beyond = straight * beyond_linear(FORWARD_LIGHT.beside, along / max(straight, vec3(1e-6)));
-  vec3 factor = max(1.0 + 3.0 * cosine_beside_peak(FORWARD_LIGHT.beside.g) * along + beyond, vec3(0));
+  // What is gathered is scaled to the exitance, so that its moments need not be those of the sweeps.
+  vec3 factor = mix(vec3(1), cut_off_phase(FORWARD_LIGHT.beside, along / max(straight, vec3(1e-6))), straight);
   light.phi -= flow * direction;
   light.entry *= factor;
   light.uncollided *= factor;

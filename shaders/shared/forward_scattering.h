@@ -38,12 +38,16 @@ struct BesidePeak {
   vec3 share;  // of what this is more than linear that counts
 };
 
-// What that phase function is more than 1 + 3 c cos(angle), tilted until the mean cosine is the same, so that it adds
-// neither light nor flux.
-QG_INLINE vec3 beyond_linear(BesidePeak beside, vec3 cosine) {
+// That phase function, cut off.
+QG_INLINE vec3 cut_off_phase(BesidePeak beside, vec3 cosine) {
   vec3 g = beside.g, s = vec3(1.0f) + g * g - 2.0f * g * cosine;
-  vec3 henyey = (vec3(1.0f) - g * g) / (s * sqrt(s) * (vec3(1.0f) - forward_peak(g)));
-  return beside.share * (min(henyey, beside.most) - 3.0f * beside.mean * cosine - vec3(1.0f));
+  return min((vec3(1.0f) - g * g) / (s * sqrt(s) * (vec3(1.0f) - forward_peak(g))), beside.most);
+}
+
+// What it is more than 1 + 3 c cos(angle), tilted until the mean cosine is the same, so that it adds neither light nor
+// flux.
+QG_INLINE vec3 beyond_linear(BesidePeak beside, vec3 cosine) {
+  return beside.share * (cut_off_phase(beside, cosine) - 3.0f * beside.mean * cosine - vec3(1.0f));
 }
 
 #ifdef __cplusplus
