@@ -45,6 +45,8 @@ ALLOWED = {
     "power, irradiance or radiance of a light, texels of images": f"0 to {brief(POWER)}",
     "scattering and absorption": f"0 to {brief(COEFFICIENT)} 1/mm",
     "irradiance given to `set_irradiance`": f"0 to {brief(IRRADIANCE)} W/mm²",
+    "layers of edits": f"at most {constant('optics/edit_layer.h', 'most_layers'):,.0f} of a scene, with names of 1 to "
+    f"{constant('optics/edit_layer.h', 'longest_layer_name'):,.0f} bytes",
     "lights of a scene": f"at most {constant('render/light/lights.h', 'most_lights'):,.0f}",
     "places and edges of lights": f"at most {brief(LENGTH)} mm from 0 in each direction",
     "angle of a spot or projector": f"{constant('render/light/light_kinds.cpp', 'least_angle'):g} degrees or more",
