@@ -116,7 +116,7 @@ struct SolveReport {
   // What the exitance is off by because the irradiance is (engine/solve/light_error.h); of what is corrected at rest,
   // under lights. Else empty.
   std::optional<ErrorEstimate> light_error;
-  // What the angles of scattering change, which the solution knows by the reduced coefficient alone: what random walks
+  // What the angles of scattering change beyond the two moments that the solution knows: what random walks
   // found the exitance off by beyond all of the above (engine/solve/certificate.h). Of a material that says its g, and
   // what is corrected at rest; else empty.
   std::optional<ErrorEstimate> phase_error;

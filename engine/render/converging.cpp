@@ -154,7 +154,7 @@ std::string Converging::limit(double whole) const {
   const double most = std::max({mesh, light, sweeps, noise, angle, phase});
   if (most == phase) {
     return said + "what scattering forwards changes is " + percent_text(phase) +
-           ", of which the solver knows the reduced coefficient alone";
+           ", of which sweeps know two moments alone";
   }
   if (most == mesh) {
     return said + "the mesh's part is " + percent_text(mesh) +

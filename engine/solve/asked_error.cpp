@@ -55,7 +55,7 @@ std::string advice(const SolveReport& report) {
   if (!report.correction && mesh >= solver) return off + "the mesh's: a correction would take most of that away";
   if (phase > std::max({mesh, solver, model, light})) {
     return off +
-           "that of scattering forwards, of which the solver knows the reduced coefficient alone: no option brings "
+           "that of scattering forwards, of which sweeps know two moments alone: no option brings "
            "it down";
   }
   if (light > std::max({mesh, solver, model})) {
