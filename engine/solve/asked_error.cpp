@@ -54,9 +54,7 @@ std::string advice(const SolveReport& report) {
   const std::string off = "the error is stated as " + percent_text(most(report.error)) + ", most of it ";
   if (!report.correction && mesh >= solver) return off + "the mesh's: a correction would take most of that away";
   if (phase > std::max({mesh, solver, model, light})) {
-    return off +
-           "that of scattering forwards, of which sweeps know two moments alone: no option brings "
-           "it down";
+    return off + "that of scattering forwards, of which sweeps know two moments alone: no option brings it down";
   }
   if (light > std::max({mesh, solver, model})) {
     return off + "the light's: fewer lights have finer shadow maps";

@@ -39,9 +39,8 @@ struct HenyeyUpTo {
 // Below this g the peak is nothing, and differences above lose what they are of.
 constexpr double least_g = 1e-2;
 
-// What light that scatters forwards is more than linear counts half: then no direction has less than nothing of it, and
-// of what that leaves of balls of 1.5 to 10 mean free paths half is gone, too (docs/accuracy.md, "Scattering that goes
-// forwards").
+// What light that scatters forwards is more than linear counts half: then no direction has less than next to nothing of
+// it, and the lit side of balls is nearest to walks (docs/physics.md, "Light that scatters forwards").
 constexpr double share_beyond = 0.5;
 
 struct CutOff {

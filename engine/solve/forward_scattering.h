@@ -18,8 +18,7 @@ namespace quadgraph {
 struct ForwardParts {
   Workspace& work;
   const LevelBuffers& level;
-  const device::Buffer&
-      deposit;  // fixed point, at the corners of the tets, four each: power scattered for the first time
+  const device::Buffer& deposit;                     // as of TransportForwardRef
   const device::Buffer &tet_offset, &tet_incidence;  // tets around each vertex
   const device::Buffer& unit;                        // vec3: the scale of what was known
 };

@@ -251,9 +251,7 @@ void TransportSamples::record_source(const TransportParts& parts, const Transpor
                          "transport source",
                          4 * fluence_.size() + deposit_.size() + 3 * source_before_.size() +
                              level.tet_count * (sizeof(glm::uvec4) + 8 * vec3_bytes));
-  if (parts.forward()) {
-    forward_->record_flow(forward_parts(parts), shares.present, shares.before);
-  }
+  if (parts.forward()) forward_->record_flow(forward_parts(parts), shares.present, shares.before);
 }
 
 void TransportSamples::begin_seeds(std::uint32_t seed) {

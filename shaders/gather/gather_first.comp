@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "gather/gather_shared.h"
 #include "gather/tet_quadrature.h"
-#include "source/fixed_point.glsl"
+#include "transport/first_scattered.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
 
@@ -22,12 +22,6 @@ SolidRef solid;
 #define BODY solid.body
 #define POINTS push.points
 #include "gather/gather_fields.glsl"
-
-float volume_of(uvec4 corners) {
-  vec3 p = BODY.vertices.at[corners.x];
-  vec3 e1 = BODY.vertices.at[corners.y] - p, e2 = BODY.vertices.at[corners.z] - p;
-  return abs(dot(e1, cross(e2, BODY.vertices.at[corners.w] - p))) / 6.0;
-}
 
 // Beside light that has scattered, less of the other than this share counts as none.
 const float GATHER_FAINT = 1e-3;
@@ -103,7 +97,7 @@ void main() {
   uvec4 ids = BODY.tets.at[tet];
   Means had = means_of(
       Corners(push.points.at[ids.x], push.points.at[ids.y], push.points.at[ids.z], push.points.at[ids.w]));
-  vec3 scattered = volume_of(ids) * optical_in(tet).sigma_s_prime, unit = push.scale.at[0].scale;
+  vec3 scattered = volume_of(BODY.vertices, ids) * optical_in(tet).sigma_s_prime, unit = push.scale.at[0].scale;
   uint at = 4u * tet;
   push.lacking.at[at] = power_at(push.deposit, at) * unit - scattered * had.a;
   push.lacking.at[at + 1u] = power_at(push.deposit, at + 1u) * unit - scattered * had.b;

@@ -28,7 +28,7 @@ void main() {
   mat3 towards = mat3(0.0);
   for (uint k = forward.tet_offset.at[v]; k < forward.tet_offset.at[v + 1u]; ++k) {
     uint tet = forward.tet_incidence.at[k];
-    first += first_of(tet);
+    first += first_of(forward.deposit, tet);
     towards += first_towards(tet);
   }
   mat3 ways = directions_of(first, towards);

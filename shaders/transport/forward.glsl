@@ -3,8 +3,8 @@
 #ifndef QUADGRAPH_FORWARD_GLSL
 #define QUADGRAPH_FORWARD_GLSL
 
-#include "source/fixed_point.glsl"
 #include "shared/forward_scattering.h"
+#include "transport/first_scattered.glsl"
 #include "transport/transport_shared.h"
 
 #ifndef FORWARD
@@ -24,16 +24,9 @@ mat3 scaled_by(vec3 by, mat3 flux) {
   return mat3(by * flux[0], by * flux[1], by * flux[2]);
 }
 
-// Power that a tet scatters for the first time, W, scaled.
-vec3 first_of(uint tet) {
-  vec3 all = vec3(0);
-  for (uint k = 0u; k < 4u; ++k) all += power_at(FORWARD.deposit, 4u * tet + k);
-  return all;
-}
-
-// That power times the mean direction of travel of the light that it was of.
+// Power that a tet scatters for the first time times the mean direction of travel of the light that it was of.
 mat3 first_towards(uint tet) {
-  vec3 all = first_of(tet);
+  vec3 all = first_of(FORWARD.deposit, tet);
   mat3 towards;
   for (uint axis = 0u; axis < 3u; ++axis) towards[axis] = 2.0 * power_at(FORWARD.towards, 3u * tet + axis) - all;
   return towards;

@@ -45,20 +45,14 @@ void see(uint tet, uint which, vec3 present) {
   push.flows.at[FLOWS * tet + which] = mix(seen, vec3(0), lessThan(abs(seen), SAME * abs(present)));
 }
 
-float volume_of(uvec4 corners) {
-  vec3 p = forward.vertices.at[corners.x];
-  vec3 e1 = forward.vertices.at[corners.y] - p, e2 = forward.vertices.at[corners.z] - p;
-  return abs(dot(e1, cross(e2, forward.vertices.at[corners.w] - p))) / 6.0;
-}
-
 void see_tet(uint tet) {
   uvec4 corners = forward.tets.at[tet];
   Optical o = optical_of(tet);
-  vec3 sum = first_of(tet), c = 3.0 * cosine_beside_peak(forward.beside.g);
+  vec3 sum = first_of(forward.deposit, tet), c = 3.0 * cosine_beside_peak(forward.beside.g);
   mat3 directions = directions_of(sum, first_towards(tet));
-  float volume = volume_of(corners), per_volume = volume > 0.0 ? 20.0 / volume : 0.0;
+  float per_volume = per_volume_of(volume_of(forward.vertices, corners));
   for (uint k = 0u; k < 4u; ++k) {
-    vec3 first = per_volume * (power_at(forward.deposit, 4u * tet + k) - 0.2 * sum);
+    vec3 first = first_at(forward.deposit, tet, k, sum, per_volume);
     mat3 flow = scaled_by(c * o.sigma_s_prime, flux_at(push.flux, corners[k])) + scaled_by(c * first, directions);
     for (uint axis = 0u; axis < 3u; ++axis) see(tet, 3u * k + axis, flow[axis]);
     see(tet, FLOWS_FIRST + k, first);

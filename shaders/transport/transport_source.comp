@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "source/fixed_point.glsl"
+#include "transport/first_scattered.glsl"
 #include "transport/transport_shared.h"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
@@ -36,15 +36,9 @@ bool apart() {
   return uvec2(push.source_apart) != uvec2(0);
 }
 
-float volume_of(uvec4 corners) {
-  vec3 p = push.vertices.at[corners.x];
-  vec3 e1 = push.vertices.at[corners.y] - p, e2 = push.vertices.at[corners.z] - p;
-  return abs(dot(e1, cross(e2, push.vertices.at[corners.w] - p))) / 6.0;
-}
-
-// At a corner: with the linear function in the tet that has the integrals against its basis functions that the walk found.
+// At a corner.
 vec3 source_at(uint tet, uint corner, uint vertex, vec3 sum, float per_volume) {
-  vec3 first = per_volume * (power_at(push.deposit, 4u * tet + corner) - 0.2 * sum);
+  vec3 first = first_at(push.deposit, tet, corner, sum, per_volume);
   vec3 present = push.optical.at[push.even == 1u ? 0u : tet].sigma_s_prime * push.fluence.at[vertex] + first;
   uint at = 4u * tet + corner;
   vec3 before = kept(push.source_before.at[at]);
@@ -64,9 +58,8 @@ void main() {
   }
   if (i >= push.tet_count) return;
   uvec4 corners = push.tets.at[i];
-  float volume = volume_of(corners), per_volume = volume > 0.0 ? 20.0 / volume : 0.0;
-  vec3 sum = vec3(0);
-  for (uint k = 0u; k < 4u; ++k) sum += power_at(push.deposit, 4u * i + k);
+  float per_volume = per_volume_of(volume_of(push.vertices, corners));
+  vec3 sum = first_of(push.deposit, i);
   push.sources.at[i].source_0 = vec4(source_at(i, 0u, corners.x, sum, per_volume), 0.0);
   push.sources.at[i].source_1 = vec4(source_at(i, 1u, corners.y, sum, per_volume), 0.0);
   push.sources.at[i].source_2 = vec4(source_at(i, 2u, corners.z, sum, per_volume), 0.0);

@@ -13,7 +13,6 @@ from rich.table import Table
 from quadgraph.api.engine import Engine
 from quadgraph.api.materials import Material
 from quadgraph.baking.pipeline import BakeOptions, bake
-from quadgraph.base.relative_error import relative_rms
 from quadgraph_validation.accuracy import dense_study, similarity_study
 from quadgraph_validation.bodies import unseen_bodies
 from quadgraph_validation.bodies.media import Medium
@@ -49,7 +48,11 @@ def _rows(radius: float, albedo: float, eta: float, folder: Path, device: str, w
             for which, known in (("reduced", 0.0), ("with_g", g)):
                 engine.material = Material(albedo, 1 - albedo, eta, g=known)
                 solution = engine.solve()
-                row[which] = _apart(_by_zone(engine, radius, eta), truth, noise)
+                found = _by_zone(engine, radius, eta)
+                row[which] = {
+                    name: similarity_study.apart(found[part], truth[part], noise[part])
+                    for name, part in similarity_study.PARTS.items()
+                }
             row["stated"] = [solution.error.whole, solution.error.unlit] if solution.error else None
             rows.append(row)
     return rows
@@ -65,18 +68,6 @@ def _by_zone(engine: Engine, radius: float, eta: float) -> np.ndarray:
     return mean * (4 * np.pi * radius**2 / ZONES) / monte_carlo.entering_sphere(radius, eta)
 
 
-def _apart(found: np.ndarray, truth: np.ndarray, noise: np.ndarray) -> dict[str, float]:
-    """Relative RMS less the walks' noise, in quadrature, of all zones and of either half, and that of the power."""
-    parts = {"whole": slice(None), "lit": slice(ZONES // 2, None), "unlit": slice(ZONES // 2)}
-    errors = {}
-    for name, part in parts.items():
-        even, of = np.ones(len(truth[part])), truth[part][:, None]
-        apart, least = (relative_rms(even, each[part][:, None], of) for each in (found - truth, noise))
-        errors[name] = float(np.sqrt(max(apart**2 - least**2, 0.0)))
-        errors[f"{name}_noise"] = least
-    return {**errors, "power": float(found.sum() / truth.sum() - 1)}
-
-
 def tables(record: dict[str, Any]) -> list[Table]:
     """One row per ball, two columns per g."""
     forward = sorted({row["g"] for row in record["rows"]})
@@ -85,12 +76,10 @@ def tables(record: dict[str, Any]) -> list[Table]:
         *(f"g {g:g}: {by}" for g in forward for by in ("reduced", "with g")),
         title="light that scatters forwards: exitance, error in %: whole / lit / unlit",
     )
-    balls = dict.fromkeys((row["radius"], row["albedo"], row["eta"]) for row in record["rows"])
-    for ball in balls:
-        rows = [row for row in record["rows"] if (row["radius"], row["albedo"], row["eta"]) == ball]
+    for ball, rows in similarity_study.by_ball(record["rows"]).items():
         cells = [
-            " / ".join(f"{100 * row[by][part]:.1f}" for part in ("whole", "lit", "unlit"))
-            for row in sorted(rows, key=lambda row: row["g"])
+            " / ".join(f"{100 * row[by][part]['error']:.1f}" for part in similarity_study.PARTS)
+            for row in rows
             for by in ("reduced", "with_g")
         ]
         table.add_row(*(f"{number:g}" for number in ball), *cells)

@@ -25,6 +25,7 @@ CASES = (
 )
 FORWARD = (0.5, 0.8, 0.9)  # g
 ZONES = 16  # of equal area, half of them lit
+PARTS = {"whole": slice(None), "lit": slice(ZONES // 2, None), "unlit": slice(ZONES // 2)}
 WALKS = 200_000
 SEED = 1
 
@@ -51,7 +52,6 @@ def run(_body_of: BodyOf, walks: int = WALKS) -> dict[str, Any]:
             truth, error = exitance(full, radius, eta, g, walks, SEED + 1)
             less = g / (1 + g)
             delta, delta_noise = exitance(Medium(albedo / (1 - less), 1 - albedo), radius, eta, less, walks, SEED + 2)
-            parts = {"whole": slice(None), "lit": slice(ZONES // 2, None), "unlit": slice(ZONES // 2)}
             rows.append(
                 {
                     "radius": radius,
@@ -59,22 +59,30 @@ def run(_body_of: BodyOf, walks: int = WALKS) -> dict[str, Any]:
                     "eta": eta,
                     "g": g,
                     "power": float(reduced.sum() / truth.sum() - 1),
-                    "delta": _apart(delta, truth, delta_noise, error),
+                    "delta": apart(delta, truth, delta_noise, error),
                     **{
-                        name: _apart(reduced[part], truth[part], noise[part], error[part])
-                        for name, part in parts.items()
+                        name: apart(reduced[part], truth[part], noise[part], error[part])
+                        for name, part in PARTS.items()
                     },
                 }
             )
     return {"walks": walks, "seed": SEED, "zones": ZONES, "rows": rows}
 
 
-def _apart(found: np.ndarray, truth: np.ndarray, *noises: np.ndarray) -> dict[str, float]:
+def apart(found: np.ndarray, truth: np.ndarray, *noises: np.ndarray) -> dict[str, float]:
     """Relative RMS of the difference less the noise of both, in quadrature, and that noise."""
     even, of = np.ones(len(truth)), truth[:, None]
     noise = math.hypot(*(relative_rms(even, each[:, None], of) for each in noises))
-    apart = relative_rms(even, found[:, None] - of, of)
-    return {"error": float(np.sqrt(max(apart**2 - noise**2, 0.0))), "noise": noise}
+    found_off = relative_rms(even, found[:, None] - of, of)
+    return {"error": float(np.sqrt(max(found_off**2 - noise**2, 0.0))), "noise": noise}
+
+
+def by_ball(rows: list[dict[str, Any]]) -> dict[tuple[float, float, float], list[dict[str, Any]]]:
+    """Rows of each radius, albedo and index, by g."""
+    found: dict[tuple[float, float, float], list[dict[str, Any]]] = {}
+    for row in sorted(rows, key=lambda row: row["g"]):
+        found.setdefault((row["radius"], row["albedo"], row["eta"]), []).append(row)
+    return found
 
 
 def tables(record: dict[str, Any]) -> list[Table]:
@@ -85,13 +93,11 @@ def tables(record: dict[str, Any]) -> list[Table]:
         *("radius, mean free paths", "albedo", "eta", *of_g),
         title="reduced scattering in place of forward scattering: exitance, error in %",
     )
-    balls = dict.fromkeys((row["radius"], row["albedo"], row["eta"]) for row in record["rows"])
-    for ball in balls:
-        rows = [row for row in record["rows"] if (row["radius"], row["albedo"], row["eta"]) == ball]
+    for ball, rows in by_ball(record["rows"]).items():
         cells = [
             " / ".join(f"{100 * row[part]['error']:.1f}" for part in ("whole", "lit", "unlit"))
             + f" ({100 * row['power']:+.1f}), {100 * row['delta']['error']:.1f}"
-            for row in sorted(rows, key=lambda row: row["g"])
+            for row in rows
         ]
         table.add_row(*(f"{number:g}" for number in ball), *cells)
     return [table]
