@@ -17,6 +17,7 @@ inline constexpr float default_eta = 1.3f;
 
 // Of a surface, GGX alpha, and that of one that nothing is said of.
 inline constexpr Range roughness_range{.low = 0.02, .high = 1};
+inline constexpr Range transmission_range{.low = 0, .high = 1};  // 0: smooth
 inline constexpr float default_roughness = 0.3f;
 
 // Names in the order they are listed to the user.

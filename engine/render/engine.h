@@ -66,6 +66,8 @@ struct RenderOptions {
   // Alpha of the GGX distribution of the surface, in roughness_range (engine/optics/material.h); empty: that of the
   // material.
   std::optional<float> roughness{};
+  // The same of the surface for light that comes through it, in transmission_range; empty: the same.
+  std::optional<float> transmission_roughness{};
   Radiance radiance = Radiance::automatic;
   Show show{};                // what is to be seen
   bool ground = false;        // with a shadow where the body stands, which counts as coverage without light

@@ -235,7 +235,7 @@ struct Engine::Implementation {
     const glm::dvec2 lens = 0.5 * double{from.aperture} * offset.lens;
     const Camera there =
         quadgraph::moved(camera, 2.0 * offset.pixel / glm::dvec2(render.width, render.height), lens, focus);
-    render.show.quantity == Quantity::picture ? draw_picture(from, there, render)
+    render.show.quantity == Quantity::picture ? draw_picture(from, there, render, index)
                                               : draw_inside(there, render, index == 0);
     if (!averaged) return;
     if (!mean) mean.emplace(device);
@@ -307,7 +307,7 @@ struct Engine::Implementation {
   }
 
   // The body as it looks; how its radiance left, never automatic.
-  Radiance draw_surface(const Camera& camera, const RenderOptions& render) {
+  Radiance draw_surface(const Camera& camera, const RenderOptions& render, std::uint32_t frame) {
     std::optional<PlacedRoughness> placed;
     if (render.roughness_map) placed.emplace(placed_roughness(*render.roughness_map));
     const BodyRoughness* own = own_roughness(render);
@@ -343,7 +343,10 @@ struct Engine::Implementation {
                                        .shadows = shadows,
                                        .roughness = roughness(render),
                                        .placed_roughness = there,
-                                       .gather = view_rays ? &*view_rays : nullptr},
+                                       .gather = view_rays ? &*view_rays : nullptr,
+                                       .transmission_roughness = render.transmission_roughness,
+                                       .frame = frame,
+                                       .single_frame = !averaged},
                            camera, render.width, render.height));
     return leaves;
   }
@@ -354,12 +357,12 @@ struct Engine::Implementation {
     return GroundSource{graph.levels()[0], simulation->level(0), simulation->exitance()};
   }
 
-  void draw_picture(const View& from, const Camera& camera, const RenderOptions& render) {
+  void draw_picture(const View& from, const Camera& camera, const RenderOptions& render, std::uint32_t frame) {
     legend.reset();
     const auto& map = render.roughness_map;
     const BodyRoughness* own = own_roughness(render);
     images.set_roughness(roughness(render), map ? map->roughness : own ? own->most() : 0);
-    radiance = draw_surface(camera, render);
+    radiance = draw_surface(camera, render, frame);
     if (render.ground) {
       if (!ground) ground.emplace(device);
       add_all(ground->run(mesh, bounds, from, camera, rasteriser.picture(), ground_source()));

@@ -43,6 +43,10 @@ void check_options(const RenderOptions& options) {
     throw InputError("samples: found " + std::to_string(options.samples) + ", expected " + samples_range.text());
   }
   if (options.roughness) check_roughness(*options.roughness);
+  if (options.transmission_roughness && !transmission_range.contains(*options.transmission_roughness)) {
+    throw InputError("transmission_roughness: found " + number_text(*options.transmission_roughness) + ", expected " +
+                     transmission_range.text());
+  }
   check_convergence(options);
   if (!options.roughness_map) return;
   if (!options.roughness_map->image) throw InputError("roughness_map, image: found none");

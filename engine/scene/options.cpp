@@ -235,6 +235,14 @@ void add_picture(OptionTable& table) {
        .range = roughness_range,
        .help = "roughness of the surface, GGX alpha, " + roughness_range.text() + "; default: that of the material, " +
                number_text(default_roughness) + " where it says none"});
+  table.member<&Scene::render, &RenderOptions::transmission_roughness>(
+      {.name = "transmission-roughness",
+       .member = "/picture/transmission_roughness",
+       .keyword = "transmission_roughness",
+       .metavar = "ALPHA",
+       .range = transmission_range,
+       .help = "roughness of the surface for light that comes out of it, GGX alpha, " + transmission_range.text() +
+               "; 0: smooth; default: the roughness"});
   table.member<&Scene::render, &RenderOptions::radiance>({.name = "radiance",
                                                           .member = "/picture/radiance",
                                                           .keyword = "radiance",

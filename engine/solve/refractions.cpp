@@ -1,23 +1,41 @@
 #include "engine/solve/refractions.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <string>
 
 #include "engine/base/error.h"
 #include "engine/optics/fresnel.h"
+#include "engine/optics/rough_boundary.h"
 #include "engine/reference/operator.h"
 
 namespace quadgraph {
 namespace {
 
-gpu::Refraction refraction(float eta, std::uint32_t entering) {
+double square_of_step(std::uint32_t step) {
+  const double root = static_cast<double>(step) / REFLECTANCE_STEPS;
+  return root * root;
+}
+
+// Refraction::reflectance of that index.
+std::array<float, REFLECTANCE_VALUES> reflectances(double eta) {
+  std::array<float, REFLECTANCE_VALUES> found{};
+  constexpr std::uint32_t row = REFLECTANCE_STEPS + 1;
+  for (std::uint32_t k = 0; k < REFLECTANCE_VALUES; ++k) {
+    found[k] = static_cast<float>(rough_reflectance(square_of_step(k % row), square_of_step(k / row), eta));
+  }
+  return found;
+}
+
+gpu::Refraction refraction(float eta, std::uint32_t entering, std::uint64_t reflectance) {
   const double index = eta;
   return {.eta = eta,
           .transmitted = static_cast<float>(diffuse_transmittance(index)),
           .kept = static_cast<float>(2 * fresnel_moment(1, index)),
           .radiance_norm = static_cast<float>(radiance_norm(index)),
-          .entering = entering};
+          .entering = entering,
+          .reflectance = reflectance};
 }
 
 gpu::Boundary single_precision(const Boundary& boundary) {
@@ -51,6 +69,8 @@ Refractions::Refractions(device::Device& device, std::uint32_t bodies)
     : device_(device),
       eta_(bodies, 1.0f),
       on_device_(device, bodies * sizeof(gpu::Refraction), device::Place::device, "material/refraction of bodies"),
+      reflectances_(device, bodies * REFLECTANCE_VALUES * sizeof(float), device::Place::device,
+                    "material/reflectance of bodies"),
       boundaries_on_host_(bodies * value_count<Method> * value_count<Source> * value_count<Model>),
       boundaries_on_device_(device, boundaries_on_host_.size() * sizeof(gpu::Boundary), device::Place::device,
                             "operator/boundaries of bodies") {
@@ -60,7 +80,13 @@ Refractions::Refractions(device::Device& device, std::uint32_t bodies)
 void Refractions::write() {
   const std::vector<float> different = different_indices(eta_);
   std::vector<gpu::Refraction> kinds, bodies;
-  for (const float index : different) kinds.push_back(refraction(index, static_cast<std::uint32_t>(kinds.size())));
+  std::vector<std::array<float, REFLECTANCE_VALUES>> tables;
+  for (const float index : different) {
+    const auto number = static_cast<std::uint32_t>(kinds.size());
+    tables.push_back(reflectances(double{index}));
+    kinds.push_back(refraction(index, number, reflectances_.address() + number * sizeof(tables.front())));
+  }
+  device::write_bytes(device_, reflectances_, std::as_bytes(std::span(tables)));
   for (const float index : eta_) {
     bodies.push_back(*std::ranges::find(kinds, index, &gpu::Refraction::eta));
   }

@@ -52,6 +52,7 @@ class Refractions {
   device::Device& device_;
   std::vector<float> eta_;
   device::Buffer on_device_;
+  device::Buffer reflectances_;  // REFLECTANCE_VALUES for each index that differs from those before
   // By body, of each method, source and model, which keep their places: what a solve takes of memory does not hang on
   // the solves before it.
   std::vector<gpu::Boundary> boundaries_on_host_;

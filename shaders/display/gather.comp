@@ -21,12 +21,14 @@ const float PI = 3.14159265;
 struct Sample {
   uint face;
   vec3 position, normal, specular;
+  float roughness;
 };
 
 Sample sample_at(uint i) {
   vec4 specular = push.samples[1].at[i], normal = push.samples[2].at[i];
   uint face = uint(specular.w) * FACE_HALF + uint(normal.w);
-  return Sample(face, push.samples[0].at[i].xyz, normal.xyz, specular.xyz);
+  vec4 position = push.samples[0].at[i];
+  return Sample(face, position.xyz, normal.xyz, specular.xyz, position.w);
 }
 
 // Whether one ray does for two samples of a pixel. Between faces what is seen can change too much.
@@ -63,8 +65,8 @@ float summed(vec3 radiance) {
   return radiance.x + radiance.y + radiance.z;
 }
 
-// Of the point of a face at barycentric coordinates `l`, where `radiance` leaves along `v` at a surface of normal `n`.
-PixelDoubt doubt_at(uint face, vec3 l, vec3 v, vec3 n, vec3 radiance) {
+// Of the point of a face at barycentric coordinates `l`, which that light leaves.
+PixelDoubt doubt_at(uint face, vec3 l, Leaving light) {
   vec3 exitance = vec3(0), area = vec3(0);
   for (uint k = 0u; k < 3u; ++k) {
     uint vertex = BODY.faces.at[face][k];
@@ -73,8 +75,24 @@ PixelDoubt doubt_at(uint face, vec3 l, vec3 v, vec3 n, vec3 radiance) {
     area += l[k] / max(share.area.x, 1e-30) * share.area;
   }
   Refraction body = refraction_behind(BODY.face_kinds, face);
-  float through = fresnel_transmittance(clamp(dot(v, n), 0.0, 1.0), body.eta);
-  return PixelDoubt(area.y, area.z, summed(radiance - through / body.radiance_norm * exitance), 1.0);
+  vec3 diffuse = light.through / body.radiance_norm * exitance;
+  return PixelDoubt(area.y, area.z, summed(light.radiance - diffuse), 1.0);
+}
+
+// Light that leaves a surface of that roughness: through more facets where the body can be seen through, since there
+// they differ. start: of their sequence of numbers.
+Leaving through_facets(uint face, vec3 l, vec3 v, vec3 normal, float roughness, uint start) {
+  uint number = push.facets * push.frame;
+  Leaving sum = leaving(face, l, v, normal, scene.scale, Facets(roughness, start, number, 0u));
+  if (roughness == 0.0 || largest(sum.seen) < GATHER_END) return sum;
+  for (uint k = 1u; k < push.facets; ++k) {
+    Leaving one = leaving(face, l, v, normal, scene.scale, Facets(roughness, start, number + k, 0u));
+    sum.radiance += one.radiance;
+    sum.seen += one.seen;
+    sum.through += one.through;
+  }
+  float share = 1.0 / float(push.facets);
+  return Leaving(share * sum.radiance, share * sum.seen, share * sum.through);
 }
 
 // One view ray for all samples that lie together: where faces are larger than pixels, one per pixel. Samples are read
@@ -90,7 +108,8 @@ void main() {
   PixelDoubt doubt = PixelDoubt(0.0, 0.0, 0.0, 0.0);
   float alpha = 0.0;
   while (waiting != 0u) {
-    Sample first = sample_at(sample_of(pixel, findLSB(waiting)));
+    uint k_first = uint(findLSB(waiting));
+    Sample first = sample_at(sample_of(pixel, k_first));
     float share = 0.0;
     vec3 position = vec3(0), normal = vec3(0);
     for (uint k = 0u; k < 4u; ++k) {
@@ -107,13 +126,14 @@ void main() {
     vec3 v = towards_eye(scene.eye, position);
     normal = normalize(normal);
     vec3 l = coordinates_in(first.face, position);
-    Leaving light = leaving(first.face, l, v, normal, scene.scale);
+    float roughness = push.transmission < 0.0 ? first.roughness : push.transmission;
+    Leaving light = through_facets(first.face, l, v, normal, roughness, hash(4u * pixel.index + k_first));
     scattered += share * light.radiance;
     seen += share * light.seen;
     unscattered += share * light.seen * radiance_behind(-v);
     alpha += share;
     if (!doubted) continue;
-    PixelDoubt here = doubt_at(first.face, l, v, normal, light.radiance);
+    PixelDoubt here = doubt_at(first.face, l, light);
     doubt.unlit += share * here.unlit;
     doubt.dimmest += share * here.dimmest;
     doubt.angle += share * here.angle;

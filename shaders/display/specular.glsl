@@ -1,6 +1,6 @@
 // Light that the surface reflects. The shader that includes it defines first
 //   SURFACE  the SurfacePush, e.g. push
-// and sets `roughness` and `eta`.
+// and sets `roughness`, `eta` and `evenly`.
 #ifndef QUADGRAPH_SPECULAR_GLSL
 #define QUADGRAPH_SPECULAR_GLSL
 
@@ -18,6 +18,7 @@ const float PI = 3.14159265;
 
 float roughness;  // GGX alpha here
 float eta;        // index of refraction here
+float evenly;     // share of even light that the surface here reflects towards the view
 
 // How much of the roughness here is that of an image.
 float placed_share = 0.0;
@@ -74,15 +75,13 @@ vec3 specular_radiance(vec3 position, vec3 n, vec3 v, float sky) {
   for (uint i = 0u; i < SCENE.light_count; ++i) {
     LightRecord light = SCENE.lights.at[i];
     if (light.kind == LIGHT_AMBIENT) {
-      // Ambient light is reflected as by a smooth surface.
-      sum += fresnel_reflectance(clamp(dot(n, v), 0.0, 1.0), eta) / PI * sky * light.power;
+      sum += evenly / PI * sky * light.power;
       continue;
     }
     LightShape shape = no_shape();
     if (SHAPED) shape = SCENE.shapes.at[i];
     if (SHAPED && light.kind == LIGHT_ENVIRONMENT) {
-      float share = fresnel_reflectance(clamp(dot(n, v), 0.0, 1.0), eta) * sky;
-      sum += share * light.power * reflected_environment(shape, n, v);
+      sum += evenly * sky * light.power * reflected_environment(shape, n, v);
       continue;
     }
     Incident incident = incident_light(light, shape, position);

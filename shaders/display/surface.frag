@@ -25,6 +25,7 @@ void main() {
   eta = body.eta;
   vec3 n = normalize(normal);
   vec3 v = towards_eye(SCENE.eye, position);
+  evenly = rough_reflectance(body, dot(n, v), roughness);
   float share = fresnel_transmittance(clamp(dot(n, v), 0.0, 1.0), eta) / body.radiance_norm;
   scattered_coverage = vec4(exitance * share, 1.0);
   specular = vec4(specular_radiance(position, n, v, sky), 1.0);

@@ -50,7 +50,8 @@ void main() {
   }
   vec3 v = towards_eye(SCENE.eye, at);
   if (dot(n, v) < 0.0) n = gl_FrontFacing ? normalize(n - 1.001 * dot(n, v) * v) : -n;
-  float share = fresnel_transmittance(clamp(dot(n, v), 0.0, 1.0), eta) / SCENE.radiance_norm;
+  evenly = fresnel_reflectance(clamp(dot(n, v), 0.0, 1.0), eta);
+  float share = (1.0 - evenly) / SCENE.radiance_norm;
   scattered_coverage = vec4(share * path_exitance(field, at), 1.0);
   specular = vec4(specular_radiance(at, n, v, 1.0), 1.0);
   unscattered = vec4(0.0, 0.0, 0.0, 1.0);

@@ -13,6 +13,7 @@
 #endif
 
 #include "gather/gather_fields.glsl"
+#include "gather/facets.glsl"
 #include "gather/gather_shared.h"
 #include "material/fresnel.glsl"
 
@@ -49,7 +50,7 @@ vec3 smooth_normal(uint face, vec3 l) {
 
 // A surface that a ray meets from inside.
 struct Met {
-  vec3 normal;   // unit, of the smooth surface
+  vec3 normal;   // unit, of the smooth surface, or of a facet
   float cosine;  // of the ray with it, at least 0
   float eta;     // of the body
 };
@@ -61,8 +62,9 @@ vec3 coordinates_on(uvec3 ids, TetPoint at) {
 }
 
 // At a point of outside face `face`.
-Met met_from_inside(uint face, TetPoint at, vec3 direction) {
-  vec3 n = smooth_normal(face, coordinates_on(BODY.faces.at[face], at));
+Met met_from_inside(uint face, TetPoint at, vec3 direction, inout Facets facets) {
+  vec3 n = smooth_normal(face, coordinates_on(BODY.faces.at[face], at)), towards, local;
+  if (is_rough(facets)) n = -facet_seen(facets, -n, -direction, towards, local);
   return Met(n, max(dot(direction, n), 0.0), eta_behind(BODY.face_kinds, face));
 }
 
@@ -117,7 +119,7 @@ LocalLight light_against(TetPoint at, vec3 direction) {
 }
 
 // One step of transport: collided and uncollided fluence scattered into a ray that goes from its point into the body.
-Gathered gather(TetPoint at, vec3 direction) {
+Gathered gather(TetPoint at, vec3 direction, inout Facets facets) {
   Gathered sum = Gathered(vec3(0), vec3(0), NO_ESCAPE, NO_ESCAPE);
   vec3 left = vec3(1);
   LocalLight here = light_against(at, direction);
@@ -142,7 +144,7 @@ Gathered gather(TetPoint at, vec3 direction) {
     uint face = across - BODY.tet_count;
     vec3 n = outward_normal(face);
     if (is_open(BODY.face_kinds, face)) {
-      Met met = met_from_inside(face, at, direction);
+      Met met = met_from_inside(face, at, direction, facets);
       float reflected = internal_reflectance(met.cosine, met.eta);
       vec3 through = left * (1.0 - reflected);
       sum.seen += through;

@@ -45,11 +45,12 @@ void main() {
   vec3 exitance = vec3(0);
   for (uint node = 0u; node < LAMBERTIAN_NODES; ++node) {
     vec3 incoming = lambertian_incoming(2u * node + (node >> 1u), normal, tangent);
+    Facets facets = SMOOTH;
     if (push.through == 1u) {
-      exitance += LAMBERTIAN_W[node] * leaving(face, vec3(1.0 / 3.0), -incoming, normal, push.scale).radiance;
+      exitance += LAMBERTIAN_W[node] * leaving(face, vec3(1.0 / 3.0), -incoming, normal, push.scale, facets).radiance;
       continue;
     }
-    vec3 radiance = gather(centre, refracted(incoming, normal, eta)).radiance / (eta * eta);
+    vec3 radiance = gather(centre, refracted(incoming, normal, eta), facets).radiance / (eta * eta);
     exitance += LAMBERTIAN_W[node] * fresnel_transmittance(sqrt(LAMBERTIAN_U[node]), eta) * radiance;
   }
   push.exitance.at[face] = PI * exitance;

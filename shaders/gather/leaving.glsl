@@ -20,6 +20,7 @@ vec3 view_ray(vec3 outward, vec3 n, vec3 face_normal, float eta) {
 struct Leaving {
   vec3 radiance;  // W/(mm^2 sr)
   vec3 seen;      // share of the light behind all parts of the body that comes through
+  float through;  // share that its surface lets through of what is inside
 };
 
 // What of a share of at most `most` is followed through further parts of the body: all but little of what is much,
@@ -37,11 +38,21 @@ vec3 scaled(vec3 radiance, uvec3 ids, vec3 l, GatherScales scale, float radiance
   return max(factor * radiance + rest / radiance_norm, least / radiance_norm);
 }
 
+// Share of the light inside that a surface of normal `n` lets out along `outward`; n: becomes that of a facet where the
+// surface is rough.
+float let_out(inout Facets facets, vec3 outward, Refraction body, inout vec3 n) {
+  if (!is_rough(facets) || body.eta == 1.0) return fresnel_transmittance(clamp(dot(outward, n), 0.0, 1.0), body.eta);
+  vec3 towards, local;
+  n = facet_seen(facets, n, outward, towards, local);
+  float reflected = fresnel_reflectance(clamp(dot(towards, local), 0.0, 1.0), body.eta);
+  return 1.0 - reflected * gone_for_good(towards, local, facets.alpha);
+}
+
 // Light that leaves face `face` at barycentric coordinates `l` along `outward`, at a surface of normal `n`. Fresnel and
 // refraction included: radiance over eta^2 is kept. Where enough of a ray comes out behind, it goes on to the next
 // part of the body, the brightest branch first. scale: null: what is gathered counts as it is.
-Leaving leaving(uint face, vec3 l, vec3 outward, vec3 n, GatherScales scale) {
-  Leaving sum = Leaving(vec3(0), vec3(0));
+Leaving leaving(uint face, vec3 l, vec3 outward, vec3 n, GatherScales scale, Facets facets) {
+  Leaving sum = Leaving(vec3(0), vec3(0), 0.0);
   vec3 share = vec3(1);  // of the light at `face`
   Escape most = NO_ESCAPE, second = NO_ESCAPE;  // that wait to be followed
   for (uint part = 0u; part < VIEW_PARTS; ++part) {
@@ -51,9 +62,11 @@ Leaving leaving(uint face, vec3 l, vec3 outward, vec3 n, GatherScales scale) {
     vec3 face_normal = doubled / max(length(doubled), 1e-30);
     if (part > 0u) n = smooth_normal(face, l);
     Refraction body = refraction_behind(BODY.face_kinds, face);
-    share *= fresnel_transmittance(clamp(dot(outward, n), 0.0, 1.0), body.eta);
+    float through = let_out(facets, outward, body, n);
+    if (part == 0u) sum.through = through;
+    share *= through;
     TetPoint at = start_on_face(BODY.face_tets.at[face], ids, l);
-    Gathered inside = gather(at, view_ray(outward, n, face_normal, body.eta));
+    Gathered inside = gather(at, view_ray(outward, n, face_normal, body.eta), facets);
     vec3 radiance = inside.radiance / (body.eta * body.eta);
     sum.radiance += share * (uvec2(scale) == uvec2(0) ? radiance : scaled(radiance, ids, l, scale, body.radiance_norm));
     sum.seen += share * (inside.seen - inside.most.share - inside.second.share);

@@ -111,7 +111,7 @@ QG_ARRAY(PixelDoubts, PixelDoubt);
 // Layers of a picture: scattered, specular and unscattered radiance, and transmittance.
 #define PICTURE_LAYERS 4
 // Images of samples. surface.frag: scattered radiance and coverage, specular, unscattered. surface_gathered.frag:
-// position and coverage; specular and the high half of the face; normal and its low half.
+// position and roughness; specular and the high half of the face; normal and its low half.
 #define SAMPLE_LAYERS 3
 #define FACE_HALF 65536
 
@@ -128,6 +128,9 @@ struct ResolvePush {
   uint tile_height;
   uint sample_stride;  // samples in a row of the tile
   uint picture_width;  // pixels
+  uint frame;          // of those that make the picture
+  uint facets;         // of a rough surface, for each view ray through a clear body
+  float transmission;  // GGX alpha of the surface for light that comes through; below 0: its own
 };
 
 #ifdef __cplusplus

@@ -3,7 +3,7 @@
 #ifndef QUADGRAPH_REFRACTION_H
 #define QUADGRAPH_REFRACTION_H
 
-#include "shared/shared.h"
+#include "shared/microfacets.h"
 
 #ifdef __cplusplus
 namespace quadgraph::gpu {
@@ -11,11 +11,12 @@ namespace quadgraph::gpu {
 
 // Of a body by its index of refraction.
 struct Refraction {
-  float eta;            // inside over outside, 1 to 3
-  float transmitted;    // share of uniform illumination from outside that enters
-  float kept;           // share of diffuse light inside that the surface reflects back
-  float radiance_norm;  // integral of F_t cos over the hemisphere, sr
-  uint entering;        // picture of environments that enters (ENVIRONMENT_ENTERING)
+  float eta;                   // inside over outside, 1 to 3
+  float transmitted;           // share of uniform illumination from outside that enters
+  float kept;                  // share of diffuse light inside that the surface reflects back
+  float radiance_norm;         // integral of F_t cos over the hemisphere, sr
+  uint entering;               // picture of environments that enters (ENVIRONMENT_ENTERING)
+  QG_REF(Floats) reflectance;  // of rough surfaces, REFLECTANCE_VALUES by GGX alpha, then by cosine
 };
 
 // Kinds of the outside faces of a level: the address of a Refraction for each body in two words, low and high, the
@@ -48,6 +49,19 @@ Refraction refraction_behind(Uints kinds, uint face) {
 
 float eta_behind(Uints kinds, uint face) {
   return Refractions(uvec2(kinds.at[0], kinds.at[1])).at[body_behind(kinds, face)].eta;
+}
+
+// Share of even light from outside that a surface of GGX roughness `alpha` reflects towards a view at that cosine.
+float rough_reflectance(Refraction body, float cosine, float alpha) {
+  uint row = REFLECTANCE_STEPS + 1u;
+  vec2 place = sqrt(clamp(vec2(cosine, alpha), 0.0, 1.0)) * float(REFLECTANCE_STEPS);
+  uvec2 cell = min(uvec2(place), uvec2(REFLECTANCE_STEPS - 1));
+  vec2 share = place - vec2(cell);
+  uint at = cell.y * row + cell.x;
+  float less = mix(body.reflectance.at[at], body.reflectance.at[at + 1u], share.x);
+  at += row;
+  float more = mix(body.reflectance.at[at], body.reflectance.at[at + 1u], share.x);
+  return mix(less, more, share.y);
 }
 #endif
 

@@ -61,7 +61,7 @@ def photographed(
         "material": str(material) if isinstance(material, Path) else {**material, "eta": ETA},
         "lights": [lights],
         "camera": around,
-        "picture": {"width": camera["width"], "height": camera["height"]},
+        "picture": {"width": camera["width"], "height": camera["height"], "transmission_roughness": 0},
     }
     stage = core.Stage("cpu")
     stage.show(core.scene_file(json.dumps(document)).at(0))

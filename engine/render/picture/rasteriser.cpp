@@ -23,6 +23,8 @@ namespace quadgraph {
 namespace {
 
 constexpr std::uint32_t tile_pixels = 512;  // per side; 96 MiB of samples
+constexpr std::uint32_t facets_where_clear =
+    4;  // of pictures of several frames: what is seen through them differs much
 
 gpu::SurfaceScene scene(const RasterInput& input, const Camera& camera) {
   gpu::SurfaceScene scene{.clip_from_offset = camera.clip_from_offset,
@@ -202,7 +204,10 @@ gpu::ResolvePush Rasteriser::resolve_push(std::uint64_t scene, const Tile& tile)
                            .tile_width = tile.width,
                            .tile_height = tile.height,
                            .sample_stride = 2 * (targets_->in_place() ? targets_->width : tile.width),
-                           .picture_width = picture_.width};
+                           .picture_width = picture_.width,
+                           .frame = 0,
+                           .facets = 1,
+                           .transmission = 0};
   for (std::size_t k = 0; k < PICTURE_LAYERS; ++k) resolve.layers[k] = picture_.layers[k].address();
   for (std::size_t k = 0; k < SAMPLE_LAYERS; ++k) {
     resolve.samples[k] = targets_->in_place() ? targets_->images[k].address() : targets_->samples[k].address();
@@ -211,12 +216,12 @@ gpu::ResolvePush Rasteriser::resolve_push(std::uint64_t scene, const Tile& tile)
 }
 
 void Rasteriser::record_resolve(device::Commands& commands, const char* name, const device::ComputePass& pass,
-                                std::uint64_t scene, const Tile& tile) {
+                                const gpu::ResolvePush& push) {
   commands.begin_pass(name);
   for (std::size_t k = 0; !targets_->in_place() && k < SAMPLE_LAYERS; ++k) {
-    commands.copy(targets_->images[k], targets_->samples[k], 2 * tile.width, 2 * tile.height);
+    commands.copy(targets_->images[k], targets_->samples[k], 2 * push.tile_width, 2 * push.tile_height);
   }
-  commands.dispatch(pass, resolve_push(scene, tile), std::uint64_t{tile.width} * tile.height);
+  commands.dispatch(pass, push, std::uint64_t{push.tile_width} * push.tile_height);
   commands.end_pass();
 }
 
@@ -225,7 +230,11 @@ void Rasteriser::record(device::Commands& commands, const RasterInput& input, co
   commands.draw(target(tile), viewport(tile), surface(input), surface_push(scene_.address(), input.placed_roughness),
                 input.gather != nullptr ? nullptr : &input.mesh.triangles, 3 * input.mesh.triangle_count);
   commands.end_pass();
-  record_resolve(commands, input.gather != nullptr ? "gather" : "resolve", resolve(input), scene_.address(), tile);
+  gpu::ResolvePush push = resolve_push(scene_.address(), tile);
+  push.frame = input.frame;
+  push.facets = input.single_frame ? 1 : facets_where_clear;
+  push.transmission = input.transmission_roughness.value_or(-1.0f);
+  record_resolve(commands, input.gather != nullptr ? "gather" : "resolve", resolve(input), push);
 }
 
 void Rasteriser::record(device::Commands& commands, const PathInput& input, const Tile& tile) {
@@ -234,7 +243,7 @@ void Rasteriser::record(device::Commands& commands, const PathInput& input, cons
                 gpu::SurfacePathPush{surface_push(scene_.address(), input.placed_roughness), input.field.address()},
                 &input.mesh.triangles, 3 * input.mesh.triangle_count);
   commands.end_pass();
-  record_resolve(commands, "resolve", resolve_, scene_.address(), tile);
+  record_resolve(commands, "resolve", resolve_, resolve_push(scene_.address(), tile));
 }
 
 void Rasteriser::record(device::Commands& commands, const FalseColours& input, const Camera& camera, const Tile& tile) {
@@ -247,7 +256,7 @@ void Rasteriser::record(device::Commands& commands, const FalseColours& input, c
   commands.begin_pass("false colour");
   commands.draw(target(tile), viewport(tile), *false_colour_, push, &input.indices, input.vertex_count);
   commands.end_pass();
-  record_resolve(commands, "resolve", resolve_, scene_.address(), tile);
+  record_resolve(commands, "resolve", resolve_, resolve_push(scene_.address(), tile));
 }
 
 // Adds up what the two passes of every tile took.

@@ -45,6 +45,9 @@ struct RasterInput {
   float roughness = 0.3f;                             // alpha of GGX
   const PlacedRoughness* placed_roughness = nullptr;  // null: the same everywhere
   const GatherView* gather = nullptr;                 // null: radiance as of a diffuser
+  std::optional<float> transmission_roughness{};      // the same of light that comes through; empty: the surface's
+  std::uint32_t frame = 0;                            // of those that make the picture
+  bool single_frame = true;                           // there is no other
 };
 
 // For radiance from the cells of the shortest-path method.
@@ -99,7 +102,7 @@ class Rasteriser {
   void record(device::Commands& commands, const PathInput& input, const Tile& tile);
   void record(device::Commands& commands, const FalseColours& input, const Camera& camera, const Tile& tile);
   void record_resolve(device::Commands& commands, const char* name, const device::ComputePass& pass,
-                      std::uint64_t scene, const Tile& tile);
+                      const gpu::ResolvePush& push);
 
   template <typename Record>
   std::vector<PassStats> run_tiles(std::uint32_t width, std::uint32_t height, const Record& record_tile);

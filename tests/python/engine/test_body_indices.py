@@ -218,8 +218,8 @@ def test_walks_that_certify_a_solve_know_the_index_of_each_body(baked):
             found[low] = engine.solve(certify=4.0).certificate
     for certificate in found.values():
         assert certificate is not None
-        assert certificate.whole.error < 0.03
-        assert certificate.unlit.error < 0.06
+        assert certificate.whole.error < 0.03 + 2 * certificate.whole.error_noise
+        assert certificate.unlit.error < 0.06 + 2 * certificate.unlit.error_noise
 
 
 @pytest.mark.parametrize("way", ["sp3", "corrected"])

@@ -71,7 +71,7 @@ def test_reflection_inside_a_clear_ball_is_followed(engine):
     engine.set_material(f"sigma_s_prime=0,sigma_a={sigma_a},eta={eta}")
     engine.set_lights([f"ambient:{np.pi}"])
     engine.solve()
-    picture = engine.render(**FAR)
+    picture = engine.render(**FAR, transmission_roughness=0)
     passes = transmittance_from_outside(np.array([1.0]), eta)[0]
     kept = np.exp(-2 * sigma_a * RADIUS)
     through = passes * kept * passes / (1 - (1 - passes) * kept)
@@ -96,7 +96,7 @@ def test_radiance_at_points_is_that_of_the_picture(engine):
     engine.set_material("marble")
     engine.set_lights(["directional:0.3,-0.2,-1:1"])
     engine.solve()
-    picture = engine.render(**FAR)
+    picture = engine.render(**FAR, transmission_roughness=0)
     level = engine.graph.levels[0]
     centre = np.asarray(level.vertices, np.float64)[level.faces].mean(axis=1)
     seen = np.flatnonzero(centre[:, 2] > 0.6 * RADIUS)

@@ -42,7 +42,7 @@ def test_light_that_scatters_forwards_is_seen_where_it_goes(tmp_path):
             way = np.radians(degrees)
             eye = (100 * float(np.sin(way)), 0.0, 100 * float(np.cos(way)))
             view = {"eye": eye, "look_at": (0.0, 0.0, 0.0), "orthographic": 2.2 * RADIUS, "up": "y"}
-            picture = engine.render(view, width=32, height=32)
+            picture = engine.render(view, width=32, height=32, transmission_roughness=0)
             return float(picture.scattered[..., 0].sum() / picture.alpha.sum())
 
         for degrees, missed in ((25.0, 1.3), (110.0, 0.85)):

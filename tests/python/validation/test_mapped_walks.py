@@ -26,7 +26,7 @@ LIGHT = {"type": "rectangle", "centre": [-30, 20, 40], "u": [8, 15, -8], "v": [1
 def test_pictures_of_a_mapped_volume_are_those_of_random_walks(tmp_path):
     runpy.run_path(str(EXAMPLE))["main"](tmp_path / "block.obj", tmp_path / "block.npz")
     write_levels(tmp_path / "ball.qgraph", [icosphere(4, RADIUS), icosphere(3, RADIUS)])
-    picture = {"width": SIDE, "height": SIDE, "samples": 256}
+    picture = {"width": SIDE, "height": SIDE, "samples": 256, "transmission_roughness": 0}
     scene = {
         "body": "ball.qgraph",
         "material": {"volume": "block.npz", "map": "shell"},

@@ -44,7 +44,8 @@ def engine_picture(
         engine.material = material
         engine.lights = [AmbientLight(irradiance=np.pi)]
         engine.solve()
-        picture = engine.render(Camera(azimuth=0, elevation=0, distance=DISTANCE, fov=fov), width=pixels, height=pixels)
+        camera = Camera(azimuth=0, elevation=0, distance=DISTANCE, fov=fov)
+        picture = engine.render(camera, width=pixels, height=pixels, transmission_roughness=0)
         return np.array(picture.scattered) + picture.unscattered, np.array(picture.alpha)
 
 

@@ -32,7 +32,7 @@ def taken(tmp_path, surface: Surface, material: str, eye: tuple, fov: float) -> 
         engine.lights = ["ambient:1"]
         engine.solve()
         camera = {"eye": tuple(eye), "look_at": (0.0, 0.0, 0.0), "fov": fov, "up": "y"}
-        return engine.render(camera, width=PIXELS, height=PIXELS)
+        return engine.render(camera, width=PIXELS, height=PIXELS, transmission_roughness=0)
 
 
 def off(tmp_path, surface: Surface, sigma_s: float, sigma_a: float, eta: float, eye: tuple) -> tuple[float, float]:

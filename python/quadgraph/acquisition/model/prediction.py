@@ -173,7 +173,7 @@ class Predictor:
             "deformation": capture.deformation,
             "camera": capture.cameras[camera],
             "solver": {**_SOLVER, **solver, **capture.solver, "correction": corrected},
-            "picture": {"width": width, "height": height},
+            "picture": {"width": width, "height": height, "transmission_roughness": 0},  # as derivatives have it
         }
         return core.scene_file(json.dumps(document)).at(0)
 

@@ -94,7 +94,7 @@ def _pictures(sight: Sight, wanted: ConvergingRun) -> tuple[dict[str, Picture], 
     """A picture, and the seconds of solve and picture, in each way; and how the last one converged."""
     pictures: dict[str, Picture] = {}
     seconds: dict[str, float] = {}
-    size: dict[str, Any] = {"width": PIXELS, "height": PIXELS, "samples": SAMPLES}
+    size: dict[str, Any] = pictures_study.AS_WALKED | {"samples": SAMPLES}
     limits = {"converge": wanted.converge, "time_limit": wanted.seconds}
     ways: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
         "uncorrected": ({"correction": False}, {}),

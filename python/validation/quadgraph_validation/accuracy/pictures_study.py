@@ -21,6 +21,8 @@ from quadgraph_validation.bodies.smooth_sky import SmoothSky
 from quadgraph_validation.bodies.unseen_cases import UnseenCase
 
 PIXELS, BLOCK = 96, 4  # of a picture, and of what is compared, along a side
+# Of a picture: the surface is as smooth for light that comes out as it is for the walks.
+AS_WALKED: dict[str, Any] = {"width": PIXELS, "height": PIXELS, "transmission_roughness": 0}
 FRAMES = 20  # in motion, before the picture that is judged
 WAYS = ("rest", "motion", "uncorrected")
 PARTS = ("whole", "dimmest")
@@ -146,7 +148,7 @@ def _pictures(sight: Sight, device: str) -> tuple[dict[str, np.ndarray], np.ndar
                         engine.solve(motion=True)
                 else:
                     engine.solve(correction=way == "rest")
-                picture = engine.render(camera_of(sight), width=PIXELS, height=PIXELS, samples=4)
+                picture = engine.render(camera_of(sight), **AS_WALKED, samples=4)
                 found[way] = picture.scattered[..., 0].astype(float)
                 if picture.error is not None:
                     stated[way] = {part: getattr(picture.error, part) for part in PARTS}

@@ -141,6 +141,7 @@ def picture(engine: Engine, scene: StudyScene, image: str, setting: PictureSetti
         height=PIXELS,
         samples=4,
         radiance=setting.radiance,
+        transmission_roughness=0,  # as the truth has it
     )
     shown = np.asarray(found.scattered, np.float64)[..., chosen.channel]
     if scene.direction is None:

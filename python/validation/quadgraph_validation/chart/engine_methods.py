@@ -185,7 +185,13 @@ class EngineMethod(PreparedMethod):
     def _show(self, view: str, pixels: int) -> Any:
         radiance = self.radiance if self._can_gather or self.radiance == "single" else "lambertian"
         size = {"width": pixels, "height": pixels, "samples": 4}
-        return self._engine.render(view=view, vertical_fov=FOV, **size, radiance=radiance)
+        return self._engine.render(
+            view=view,
+            vertical_fov=FOV,
+            **size,
+            radiance=radiance,
+            transmission_roughness=0,  # as the truth has it
+        )
 
 
 def _counted(number: int, what: str) -> str:

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from quadgraph_validation.truth.microsurface import at_rough_face
 from quadgraph_validation.truth.triangle_tree import ENTERING, LEAVING, first_hit
 from quadgraph_validation.truth.walk_kernel import (
     _at,
@@ -62,10 +63,11 @@ def _shone(lights, k, x, y, z, dx, dy, dz, reach):
 
 
 @njit(cache=True, nogil=True)
-def seen(tree, near, volume, eta, lights, eye, ways, samples, seed, total, squares):
+def seen(tree, near, volume, eta, alpha, lights, eye, ways, samples, seed, total, squares):
     """Add to `total` (n, k) the radiance that pixels see of each light alone, W/(mm^2 sr), scattered light only.
 
-    volume: a WalkVolume, of a majorant above 0; ways (n, s, 3): unit ways of the rays of each pixel from the eye (3,);
+    volume: a WalkVolume, of a majorant above 0; alpha: roughness (GGX) of the surface, 0 for a smooth one; ways
+    (n, s, 3): unit ways of the rays of each pixel from the eye (3,);
     samples: walks a ray; squares (n, k): sums of squares of the mean of each ray's walks, for its noise.
     """
     state = np.array([seed], np.uint64)
@@ -79,7 +81,7 @@ def seen(tree, near, volume, eta, lights, eye, ways, samples, seed, total, squar
                 continue
             found[:] = 0
             for _ in range(samples):
-                _walk(tree, near, volume, eta, lights, eye, way, face, reach, state, found)
+                _walk(tree, near, volume, eta, alpha, lights, eye, way, face, reach, state, found)
             for k in range(count):
                 value = found[k] / samples
                 total[pixel, k] += value
@@ -87,15 +89,23 @@ def seen(tree, near, volume, eta, lights, eye, ways, samples, seed, total, squar
 
 
 @njit(cache=True)
-def _walk(tree, near, volume, eta, lights, eye, way, face, reach, state, found):
-    """One walk that enters where a ray meets the body; adds what it meets of each light to `found`."""
-    nx, ny, nz = tree.normal[face]
+def _entering(normal, way, eta, alpha, state):
+    """The way inside of a walk from outside, and its weight; 0 where chance mirrors it at a rough surface."""
+    if alpha > 0:
+        dx, dy, dz, through = at_rough_face(normal, way[0], way[1], way[2], False, eta, alpha, state)
+        return dx, dy, dz, 1.0 if through else 0.0
+    nx, ny, nz = normal
     cosine = min(abs(way[0] * nx + way[1] * ny + way[2] * nz), 1.0)
     reflected, beyond = fresnel(cosine, 1 / eta)
-    weight = 1 - reflected
+    dx, dy, dz = _bent(way[0], way[1], way[2], nx, ny, nz, 1 / eta, cosine / eta - beyond)
+    return dx, dy, dz, 1 - reflected
+
+
+@njit(cache=True)
+def _walk(tree, near, volume, eta, alpha, lights, eye, way, face, reach, state, found):
+    """One walk that enters where a ray meets the body; adds what it meets of each light to `found`."""
     x, y, z = eye[0] + reach * way[0], eye[1] + reach * way[1], eye[2] + reach * way[2]
-    turn = cosine / eta - beyond
-    dx, dy, dz = _bent(way[0], way[1], way[2], nx, ny, nz, 1 / eta, turn)
+    dx, dy, dz, weight = _entering(tree.normal[face], way, eta, alpha, state)
     even, majorant = volume.scattering.size == 1, volume.majorant
     sigma_s, sigma_t = volume.scattering[0, 0, 0], majorant
     inside, scattered, skip = True, False, face
@@ -122,5 +132,8 @@ def _walk(tree, near, volume, eta, lights, eye, way, face, reach, state, found):
             weight, scattered = _lighter(weight * sigma_s / sigma_t, state), True
             dx, dy, dz = _isotropic(state)
             continue
-        dx, dy, dz, through = _at_face(tree.normal[face], dx, dy, dz, inside, side, eta, state)
+        if alpha > 0:
+            dx, dy, dz, through = at_rough_face(tree.normal[face], dx, dy, dz, inside, eta, alpha, state)
+        else:
+            dx, dy, dz, through = _at_face(tree.normal[face], dx, dy, dz, inside, side, eta, state)
         inside = inside != through

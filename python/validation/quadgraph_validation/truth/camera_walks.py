@@ -78,11 +78,13 @@ class CameraWalker:
         walks: int,
         seed: int,
         advance: Callable[[float], None],
+        roughness: float = 0.0,
     ) -> CameraPicture:
         """What a camera sees in one channel; walks: of each pixel; the same seed gives the same picture.
 
         volume: coefficients of the channel; eta: index of refraction inside over outside; advance: is called with the
-        share that is done. KeyboardInterrupt passes through within a tenth of a second.
+        share that is done; roughness: GGX alpha of the surface, 0 for a smooth one. KeyboardInterrupt passes through
+        within a tenth of a second.
         """
         rays = max(int(np.sqrt(walks)), 2)
         samples = -(-walks // rays)
@@ -98,7 +100,7 @@ class CameraWalker:
             ways = np.ascontiguousarray(eye.ways(pieces[number], rays, generator))
             total, squares = np.zeros((2, len(ways), count))
             start = generator.integers(2**64, dtype=np.uint64)
-            what = (self._tree, self._near, volume, eta, lights, eye.eye, ways)
+            what = (self._tree, self._near, volume, eta, roughness, lights, eye.eye, ways)
             camera_walk_kernel.seen(*what, samples, start, total, squares)
             return total / rays, squares / rays
 

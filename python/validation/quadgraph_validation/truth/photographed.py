@@ -148,7 +148,8 @@ def by_engine(
                 each: found.document[each] for each in ("material", "deformation") if each in found.document
             }
             around = {each: camera[each] for each in ("eye", "look_at", "up", "fov")}
-            size = {each: camera[each] for each in ("width", "height")} | {"samples": 4}
+            size = {each: camera[each] for each in ("width", "height")}
+            size |= {"samples": 4, "transmission_roughness": 0}  # as the walks have it
             scene |= {"body": str(body.absolute()), "lights": [stated], "camera": around, "picture": size}
             scene["solver"] = {"sweep_points": SWEEP_POINTS}
             stage.show(core.scene_file(json.dumps(scene)).at(0))
