@@ -9,7 +9,7 @@
 namespace quadgraph {
 namespace {
 
-constexpr int facets = 16;           // of each of the two numbers that a facet is drawn by
+constexpr int facets = 16;             // of each of the two numbers that a facet is drawn by
 constexpr double least_cosine = 1e-3;  // of a view
 
 }  // namespace

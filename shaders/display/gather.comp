@@ -17,6 +17,7 @@ SurfaceScene scene;
 #include "gather/leaving.glsl"
 
 const float PI = 3.14159265;
+const float CLEAR_DEPTH = 16.0;  // mean free paths over the whole body
 
 struct Sample {
   uint face;
@@ -79,12 +80,18 @@ PixelDoubt doubt_at(uint face, vec3 l, Leaving light) {
   return PixelDoubt(area.y, area.z, summed(light.radiance - diffuse), 1.0);
 }
 
-// Light that leaves a surface of that roughness: through more facets where the body can be seen through, since there
-// they differ. start: of their sequence of numbers.
+// Whether the body behind a face is clear in some channel: light crosses the most of it in few mean free paths.
+bool is_clear(uint face) {
+  vec3 sigma = extinction(optical_in(BODY.face_tets.at[face]));
+  return min(sigma.x, min(sigma.y, sigma.z)) * scene.reach < CLEAR_DEPTH;
+}
+
+// Light that leaves a surface of that roughness: through more facets where the body is clear, since there they differ.
+// What a facet shows must not decide, or the mean of all would be another one. start: of their sequence of numbers.
 Leaving through_facets(uint face, vec3 l, vec3 v, vec3 normal, float roughness, uint start) {
   uint number = push.facets * push.frame;
   Leaving sum = leaving(face, l, v, normal, scene.scale, Facets(roughness, start, number, 0u));
-  if (roughness == 0.0 || largest(sum.seen) < GATHER_END) return sum;
+  if (roughness == 0.0 || push.facets == 1u || !is_clear(face)) return sum;
   for (uint k = 1u; k < push.facets; ++k) {
     Leaving one = leaving(face, l, v, normal, scene.scale, Facets(roughness, start, number + k, 0u));
     sum.radiance += one.radiance;

@@ -1,6 +1,6 @@
-// A rough surface as facets that are smooth each: the GGX distribution with Smith's masking (Walter et al. 2007), by the
-// same code on the GPU and in C++. Ways and facets are unit vectors in the frame whose third axis is the normal of the
-// surface.
+// A rough surface as facets that are smooth each: the GGX distribution with Smith's masking (Walter et al. 2007), by
+// the same code on the GPU and in C++. Ways and facets are unit vectors in the frame whose third axis is the normal of
+// the surface.
 #ifndef QUADGRAPH_MICROFACETS_H
 #define QUADGRAPH_MICROFACETS_H
 
@@ -34,8 +34,8 @@ QG_INLINE vec3 visible_facet(vec3 way, float alpha, vec2 u) {
   return normalize(vec3(alpha * cap.x, alpha * cap.y, max(cap.z, 1e-6f)));
 }
 
-// Share of what a facet reflects along `way` that no other facet holds up on either side of it (height-correlated, Heitz
-// 2014). What is held up goes in after all: what is mirrored and what comes through are all of the light.
+// Share of what a facet reflects along `way` that no other facet holds up on either side of it (height-correlated,
+// Heitz 2014). What is held up goes in after all: what is mirrored and what comes through are all of the light.
 QG_INLINE float gone_for_good(vec3 way, vec3 facet, float alpha) {
   float cosine = 2.0f * dot(way, facet) * facet.z - way.z;  // of what is mirrored
   if (cosine <= 0.0f) return 0.0f;

@@ -27,7 +27,11 @@ struct LitCube : CheckedEngine {
   }
 
   Picture picture(std::uint32_t samples, const View& view = slanted, PixelFilter filter = PixelFilter::box) {
-    return engine.render(view, {.width = side, .height = side, .samples = samples, .filter = filter});
+    return engine.render(view, {.width = side,
+                                .height = side,
+                                .samples = samples,
+                                .filter = filter,
+                                .transmission_roughness = 0.0f});  // without chance
   }
 };
 
