@@ -14,7 +14,8 @@ from functools import cache
 from pathlib import Path
 
 from quadgraph.baking.bodies import BodyMesh, bake_bodies
-from quadgraph.baking.pipeline import BakeOptions, BakeReport, bake
+from quadgraph.baking.pipeline import BakeOptions, bake
+from quadgraph.baking.report import BakeReport
 from quadgraph.base import regular_file
 from quadgraph.base.cache_folder import cache_folder
 from quadgraph.base.progress import ProgressCallback

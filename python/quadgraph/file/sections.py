@@ -53,15 +53,15 @@ def transfers(number: int, fine: Graph, coarse: Graph) -> dict[str, np.ndarray]:
     return sections
 
 
-def display(surface: Surface, finest: Graph) -> dict[str, np.ndarray]:
-    """Sections of the display mesh, tied to the outside faces of the finest level."""
+def display(surface: Surface, finest: Graph, normals: np.ndarray | None = None) -> dict[str, np.ndarray]:
+    """Sections of the display mesh, tied to the outside faces of the finest level; normals: as creases.parted."""
     rounded = surface.rounded()
     face, coordinates = display_map.nearest_faces(rounded.vertices, finest.boundary)
-    vertex, triangles, normals = parted(surface)
-    face, coordinates = display_map.faces_of_sides(face[vertex], coordinates[vertex], normals, finest.boundary)
+    vertex, triangles, found = parted(surface, normals)
+    face, coordinates = display_map.faces_of_sides(face[vertex], coordinates[vertex], found, finest.boundary)
     return {
         "display/vertices": _f32(rounded.vertices[vertex]),
-        "display/normals": _f32(normals),
+        "display/normals": _f32(found),
         "display/triangles": _u32(triangles),
         "display/face": _u32(face),
         "display/barycentric": _f32(coordinates),
@@ -83,10 +83,13 @@ def exchange(seen: Seen) -> dict[str, np.ndarray]:
     return {f"{prefix}_rays": _u32(np.array([seen.rays])), prefix: _u32(seen.table)}
 
 
-def whole_file(graphs: Sequence[Graph], surface: Surface, seen: Seen | None = None) -> dict[str, np.ndarray]:
+def whole_file(
+    graphs: Sequence[Graph], surface: Surface, seen: Seen | None = None, normals: np.ndarray | None = None
+) -> dict[str, np.ndarray]:
     """All sections but the metadata, in file order.
 
-    graphs: finest first; surface: the display mesh; seen: what the faces of one of them see, None to leave it out.
+    graphs: finest first; surface: the display mesh; seen: what the faces of one of them see, None to leave it out;
+    normals: at the corners of its triangles, as creases.parted takes them.
     """
     sections: dict[str, np.ndarray] = {}
     for number, graph in enumerate(graphs):
@@ -95,7 +98,7 @@ def whole_file(graphs: Sequence[Graph], surface: Surface, seen: Seen | None = No
             sections |= exchange(seen)
         if number + 1 < len(graphs):
             sections |= transfers(number, graph, graphs[number + 1])
-    return sections | display(surface, graphs[0])
+    return sections | display(surface, graphs[0], normals)
 
 
 def level_metadata(graph: Graph) -> dict[str, Any]:

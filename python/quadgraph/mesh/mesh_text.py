@@ -84,6 +84,49 @@ def _obj_by_line(path: Path, lines: list[tuple[int, list[str]]]) -> tuple[np.nda
     return np.array(vertices, np.float64).reshape(-1, 3), fan(polygons)
 
 
+def read_obj_normals(path: Path, next_step: str) -> tuple[np.ndarray, np.ndarray] | None:
+    """Corners (m, 3, 3) of the triangles of a readable OBJ file and its `vn` there, 0 where a corner has none.
+
+    None of a file without any. next_step: what errors end with. Raises InputError naming the line.
+    """
+    places, normals = [[0.0] * 3], [[0.0] * 3]
+    polygons: list[list[tuple[int, int]]] = []
+    for number, words in numbered_lines(path):
+        try:
+            if words[0] in ("v", "vn"):
+                (places if words[0] == "v" else normals).append(
+                    [float(word) for word in (words[1], words[2], words[3])]
+                )
+            elif words[0] == "f":
+                fields = [word.split("/") for word in words[1:]]
+                polygons.append(
+                    [(_from_1(f[0], places), _from_1(f[2], normals) if len(f) > 2 and f[2] else 0) for f in fields]
+                )
+        except (ValueError, IndexError):
+            found = " ".join(words)[:80]
+            raise InputError(f"{path}, line {number}: cannot read the normals of '{found}'{next_step}") from None
+    if len(normals) == 1:
+        return None
+    corners = np.array([(p[0], p[k], p[k + 1]) for p in polygons for k in range(1, len(p) - 1)], np.int64)
+    _check_normals(path, corners.reshape(-1, 3, 2), len(normals) - 1, next_step)
+    at, of = np.moveaxis(corners.reshape(-1, 3, 2), 2, 0)
+    return np.array(places)[at], np.array(normals)[of]
+
+
+def _from_1(word: str, rows: list[list[float]]) -> int:
+    """An index as OBJ counts, where `rows` has one row before its first; ValueError for 0 and before that."""
+    index = int(word) if int(word) > 0 else len(rows) + int(word)
+    if int(word) == 0 or index < 1:
+        raise ValueError
+    return index
+
+
+def _check_normals(path: Path, corners: np.ndarray, count: int, next_step: str) -> None:
+    last = corners[:, :, 1].max(initial=0)
+    if last > count:
+        raise InputError(f"{path}: a face has normal {last}, but there are {count} (vn){next_step}")
+
+
 def read_off(path: Path) -> tuple[np.ndarray, np.ndarray]:
     """(n, 3) float64 vertices and (m, 3) int64 triangles of an ASCII OFF file; raises InputError naming the line."""
     lines = numbered_lines(path)
