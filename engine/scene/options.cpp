@@ -235,6 +235,16 @@ void add_picture(OptionTable& table) {
        .range = roughness_range,
        .help = "roughness of the surface, GGX alpha, " + roughness_range.text() + "; default: that of the material, " +
                number_text(default_roughness) + " where it says none"});
+  table.text(
+      OptionKind::text,
+      {.name = "normal-map",
+       .member = "/picture/normal_map",
+       .keyword = "normal_map",
+       .own_form = true,
+       .metavar = "IMAGE",
+       .help = "a normal map in tangent space (.png, green to the top), laid over all of the body from its front: "
+               "what is mirrored and what is seen inside go by it. A scene file places it (docs/scene.md)"},
+      normal_map_of, set_normal_map);
   table.member<&Scene::render, &RenderOptions::radiance>({.name = "radiance",
                                                           .member = "/picture/radiance",
                                                           .keyword = "radiance",

@@ -19,9 +19,6 @@ const float PI = 3.14159265;
 float roughness;  // GGX alpha here
 float eta;        // index of refraction here
 
-// How much of the roughness here is that of an image.
-float placed_share = 0.0;
-
 // Length of a way that is seen along the box's third axis, mm.
 float across_box(ImageBox box, vec3 way) {
   return length(vec2(dot(box.right, way), dot(box.up, way)));
@@ -30,13 +27,12 @@ float across_box(ImageBox box, vec3 way) {
 // Makes `roughness` that of a point of the surface, `rest` at rest, mm; `to_right` and `to_below`: how it differs
 // from pixel to pixel.
 void place_roughness(vec3 rest, vec3 to_right, vec3 to_below) {
-  placed_share = 0.0;
   vec3 place = in_box(SURFACE.box, rest);
   float width = max(across_box(SURFACE.box, to_right), across_box(SURFACE.box, to_below));
   if (any(greaterThan(abs(place), SURFACE.box.half_size))) return;
   ImageTap tap = image_tap(SURFACE.image, in_picture(SURFACE.box, place), texels_across(SURFACE.box, SURFACE.image, width));
-  placed_share = clamp(luminance(load_image(SURFACE.texels, tap)), 0.0, 1.0);
-  roughness = mix(SCENE.roughness, SURFACE.roughness, placed_share);
+  float share = clamp(luminance(load_image(SURFACE.texels, tap)), 0.0, 1.0);
+  roughness = mix(SCENE.roughness, SURFACE.roughness, share);
 }
 
 // Cook and Torrance 1982 with the GGX distribution and height-correlated Smith masking (Walter et al. 2007, Heitz 2014)
@@ -64,8 +60,10 @@ float blurred(LightRecord light, LightShape shape, vec3 position) {
 vec3 reflected_environment(LightShape shape, vec3 n, vec3 v) {
   vec3 mirrored = reflect(-v, n);
   vec3 seen = environment_at(shape, ENVIRONMENT_REFLECTED, mirrored);
-  if (!PLACED_ROUGHNESS) return seen;
-  return mix(seen, environment_at(shape, ENVIRONMENT_REFLECTED_PLACED, mirrored), placed_share);
+  float range = SCENE.mirrored.y - SCENE.mirrored.x;
+  if (!(PLACED_ROUGHNESS || NORMAL_MAP) || range == 0.0) return seen;
+  float share = clamp((roughness - SCENE.mirrored.x) / range, 0.0, 1.0);
+  return mix(seen, environment_at(shape, ENVIRONMENT_REFLECTED_PLACED, mirrored), share);
 }
 
 // Towards v at a point of unit normal n that sees the share `sky` of its surroundings, W/(mm^2 sr).

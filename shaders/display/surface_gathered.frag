@@ -8,19 +8,24 @@ layout(location = 0) in vec3 position;  // mm
 layout(location = 1) in vec3 normal;
 layout(location = 2) flat in uint face;  // outside face of level 0
 layout(location = 4) in float sky;  // share that is not hidden by the body
-layout(location = 5) in vec3 rest;  // mm, the position at rest
+layout(location = 5) in vec3 rest;  // mm, where the roughness lies
+layout(location = 6) in vec3 shape;  // mm, the position at rest
+layout(location = 7) flat in vec3 across;  // normal of the triangle, mm^2
 layout(location = 0) out vec4 position_coverage;  // mm, 1
 layout(location = 1) out vec4 specular_face;      // W/(mm^2 sr), high half of the face
 layout(location = 2) out vec4 normal_face;        // unit, low half of the face
 
 #include "display/specular.glsl"
+#include "display/shading_normal.glsl"
 
 void main() {
   roughness = SCENE.roughness;
   if (PLACED_ROUGHNESS) place_roughness(rest, dFdx(rest), dFdy(rest));
   eta = eta_behind(SCENE.face_kinds, face);
-  vec3 n = normalize(normal);
+  vec3 n = normalize(normal), v = towards_eye(SCENE.eye, position);
+  if (NORMAL_MAP) n = mapped_normal(n, shape, dFdx(shape), dFdy(shape), dFdx(position), dFdy(position));
+  n = seen_normal(n, across, v);
   position_coverage = vec4(position, 1.0);
-  specular_face = vec4(specular_radiance(position, n, towards_eye(SCENE.eye, position), sky), face / FACE_HALF);
+  specular_face = vec4(specular_radiance(position, n, v, sky), face / FACE_HALF);
   normal_face = vec4(n, face % FACE_HALF);
 }
