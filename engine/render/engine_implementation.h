@@ -292,16 +292,22 @@ struct Engine::Implementation {
     return body_roughness ? body_roughness->least() : stated_roughness(material).value_or(default_roughness);
   }
 
+  // The picture's, or the file's own.
+  const std::optional<NormalMap>& normals(const RenderOptions& render) {
+    return render.normal_map ? render.normal_map : maps.own_normals();
+  }
+
   // Alphas of the two pictures of an environment that are mixed to what is mirrored; the second is 0 where all of the
   // surface is as rough.
-  glm::vec2 mirrored(const RenderOptions& render) const {
+  glm::vec2 mirrored(const RenderOptions& render) {
     const BodyRoughness* own = own_roughness(render);
     const glm::vec2 found{roughness(render), render.roughness_map ? render.roughness_map->roughness
                                              : own                ? own->most()
                                                                   : 0};
-    if (!render.normal_map) return found;
+    const std::optional<NormalMap>& map = normals(render);
+    if (!map) return found;
     const float least = found.y > 0 ? std::min(found.x, found.y) : found.x, most = std::max(found.x, found.y);
-    return {least, std::min(std::sqrt(most * most + render.normal_map->spread()), 1.0f)};
+    return {least, std::min(std::sqrt(most * most + map->spread()), 1.0f)};
   }
 
   // The body as it looks; how its radiance left, never automatic.
@@ -312,7 +318,7 @@ struct Engine::Implementation {
     if (auto by_body = own ? own->placed() : std::nullopt) placed.emplace(*by_body);
     const PlacedRoughness* there = placed ? &*placed : nullptr;
     std::optional<PlacedNormals> leaning;
-    if (render.normal_map) leaning.emplace(maps.placed(*render.normal_map));
+    if (const auto& map = normals(render)) leaning.emplace(maps.placed(*map));
     const PlacedNormals* normals = leaning ? &*leaning : nullptr;
     if (report->path) {
       if (render.radiance == Radiance::gathered || render.radiance == Radiance::single) {

@@ -54,11 +54,12 @@ QG_ARRAY(LightShapes, LightShape);
 // A picture of how the surface leans (engine/render/display/normal_map.h): slopes along the picture's right and up, and
 // the mean of their squared length [Olano 2010].
 struct NormalMapRef {
-  QG_REF(Vec3s) rest;    // per display vertex, mm
+  QG_REF(Vec3s) rest;    // per display vertex, mm; or by coordinates of the mesh: u, v downwards, 1 where it lies
   QG_REF(Vec3s) texels;  // of the image
   ImageLevels image;
   ImageBox box;
   float strength;
+  uint by_mesh;  // 1: by coordinates of the mesh
 };
 
 // All that surface.vert and surface.frag read.

@@ -32,13 +32,17 @@ ImagePyramid read_slopes(const std::filesystem::path& path) {
                      "% of the texels found at or below the middle, which points into the surface; a normal map in "
                      "tangent space is wanted, most of which is light blue");
   }
-  std::ranges::transform(image.texels, image.texels.begin(), slopes_of);
-  ImagePyramid slopes = pyramid_of(std::move(image), largest_kept);
+  ImagePyramid slopes = pyramid_of(slopes_from(std::move(image)), largest_kept);
   slopes.file = path;
   return slopes;
 }
 
 }  // namespace
+
+Image slopes_from(Image normals) {
+  std::ranges::transform(normals.texels, normals.texels.begin(), slopes_of);
+  return normals;
+}
 
 std::shared_ptr<const ImagePyramid> load_normal_map(const std::filesystem::path& path) {
   static FileCache<ImagePyramid> known(4);

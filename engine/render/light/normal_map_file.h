@@ -8,6 +8,9 @@
 
 namespace quadgraph {
 
+// A picture of normals, 0 to 1, as slopes.
+Image slopes_from(Image normals);
+
 // The slopes (engine/render/display/normal_map.h) of a normal map in tangent space: red to the right, green to the top,
 // blue out of the surface, each from -1 to 1 (glTF 2.0, 3.9.3: green of OpenGL), in a .png whose values are taken as
 // they stand, 8 bits of them. From memory if the file has not changed since it was read. Texels that point into the

@@ -30,7 +30,8 @@ gpu::NormalMapRef normal_map(const PlacedNormals* placed) {
           .texels = placed->texels.address(),
           .image = placed->image,
           .box = placed->box,
-          .strength = placed->strength};
+          .strength = placed->strength,
+          .by_mesh = placed->by_mesh ? 1u : 0u};
 }
 
 gpu::SurfaceScene scene(const RasterInput& input, const Camera& camera) {

@@ -39,10 +39,11 @@ struct PlacedRoughness {
 // A NormalMap on the device.
 struct PlacedNormals {
   const device::Buffer& texels;
-  const device::Buffer& rest;  // vec3 per display vertex, mm
+  const device::Buffer& rest;  // vec3 per display vertex, mm, or DisplayMesh::texture_places
   gpu::ImageBox box;
   gpu::ImageLevels image;
   float strength;
+  bool by_mesh;
 };
 
 struct RasterInput {

@@ -1,7 +1,11 @@
 #include "engine/render/picture/surface_maps.h"
 
+#include "engine/render/light/normal_map_file.h"
+
 namespace quadgraph {
 namespace {
+
+constexpr std::uint32_t most_texels = 4096;  // a side, which no file exceeds
 
 gpu::ImageLevels levels_of(const ImagePyramid& image) {
   return {0, image.columns, image.rows, image.levels};
@@ -25,10 +29,35 @@ PlacedRoughness SurfaceMaps::placed(const RoughnessMap& map) {
           levels_of(*map.image), map.roughness};
 }
 
+const std::optional<NormalMap>& SurfaceMaps::own_normals() {
+  const DisplayMesh& mesh = graph_.display();
+  if (own_ || mesh.texture_places.empty()) return own_;
+  Image picture{mesh.texture_columns, mesh.texture_rows, {}};
+  for (std::size_t i = 0; i + 2 < mesh.normal_texture.size(); i += 3) {
+    const std::uint8_t* rgb = &mesh.normal_texture[i];
+    picture.texels.push_back(glm::vec3(rgb[0], rgb[1], rgb[2]) / 255.0f);
+  }
+  own_.emplace(std::make_shared<const ImagePyramid>(pyramid_of(slopes_from(std::move(picture)), most_texels)));
+  texture_places_ = device::upload(device_, mesh.texture_places, "display/texture places");
+  return own_;
+}
+
 PlacedNormals SurfaceMaps::placed(const NormalMap& map) {
+  if (own_ && map.slopes == own_->slopes) {
+    return {texels(normals_, map.slopes, "picture/normal map"),
+            texture_places_,
+            {},
+            levels_of(*map.slopes),
+            map.strength,
+            true};
+  }
   const Placement placement = map.placement ? *map.placement : around(graph_.display().vertices, graph_.front());
-  return {texels(normals_, map.slopes, "picture/normal map"), at_rest(), image_box(placement), levels_of(*map.slopes),
-          map.strength};
+  return {texels(normals_, map.slopes, "picture/normal map"),
+          at_rest(),
+          image_box(placement),
+          levels_of(*map.slopes),
+          map.strength,
+          false};
 }
 
 }  // namespace quadgraph

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "engine/device/device.h"
 #include "engine/file/graph.h"
@@ -19,6 +20,9 @@ class SurfaceMaps {
   PlacedRoughness placed(const RoughnessMap& map);
   PlacedNormals placed(const NormalMap& map);
 
+  // The normal texture of the file, as a map without a placement; none of a file without one.
+  const std::optional<NormalMap>& own_normals();
+
  private:
   struct Kept {
     std::shared_ptr<const ImagePyramid> image;
@@ -31,7 +35,8 @@ class SurfaceMaps {
   device::Device& device_;
   const QuadGraph& graph_;
   Kept roughness_, normals_;
-  device::Buffer rest_;
+  device::Buffer rest_, texture_places_;
+  std::optional<NormalMap> own_;  // made at first use
 };
 
 }  // namespace quadgraph

@@ -8,9 +8,9 @@ from pathlib import Path
 from quadgraph.base import outputs
 from quadgraph.base.version import __version__
 from quadgraph.file import qgraph_file, sections
-from quadgraph.mesh import display_map, file_normals, front, mesh_io
+from quadgraph.mesh import display_map, front, mesh_io
 from quadgraph.mesh.creases import parted_by
-from quadgraph.mesh.file_normals import FoundNormals
+from quadgraph.mesh.looks import file_normals
 from quadgraph.mesh.surface import SourceMesh, Surface
 
 
@@ -34,9 +34,9 @@ def write(
     outputs.check_outputs([Path(output)], [mesh])
     source = mesh_io.read_surface(mesh, unit=unit, height_mm=height_mm, longest_mm=longest_mm, up=up)
     surface = source.surface.compacted()
-    found = file_normals.find(mesh, surface, source.frame.placed) if normals == "file" else FoundNormals("angle")
+    found = file_normals.find(mesh, surface, source.frame.placed) if normals == "file" else file_normals.COMPUTED
     smooth = display_map.vertex_normals(surface)[surface.triangles]
-    vertex, triangles, at_vertices = parted_by(surface, surface.triangles, smooth, found.at_corners)
+    vertex, triangles, at_vertices = parted_by(surface, surface.triangles, smooth, found.at_corners, found.parting)
     metadata = {
         "generator": f"quadgraph {__version__}",
         "source": source.metadata(),
@@ -50,6 +50,8 @@ def write(
         "tools": {"python": platform.python_version()},
     }
     qgraph_file.write(
-        output, metadata, sections.display_alone(Surface(surface.vertices[vertex], triangles), at_vertices)
+        output,
+        metadata,
+        sections.display_alone(Surface(surface.vertices[vertex], triangles), at_vertices, found.texture),
     )
     return source

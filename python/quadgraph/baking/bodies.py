@@ -163,6 +163,9 @@ def _prepared(body: BodyMesh, options: BakeOptions, report: BakeReport, tell: Pr
     with _reporting(body, report) as of_body:
         made = pipeline.prepare(body.mesh, own, of_body, _telling(body, tell), body.part)
     placed = body.placement
+    if made.normals.texture is not None:
+        report.notes.append(f"{body.name}: a file of several bodies keeps no normal texture; its own is left out")
+        made = replace(made, normals=replace(made.normals, texture=None))
     return replace(made, surface=placed.of(made.surface), normals=made.normals.turned(placed.turned))
 
 
@@ -176,7 +179,7 @@ def _write(
     with report.timed("transfers"):
         content = joined.join(
             [
-                sections.whole_file([level.graph for level in levels], each.surface, normals=each.normals.at_corners)
+                sections.whole_file([level.graph for level in levels], each.surface, normals=each.normals)
                 for each, levels in zip(prepared, made, strict=True)
             ]
         )

@@ -26,8 +26,9 @@ from quadgraph.base.progress import ProgressCallback
 from quadgraph.base.version import __version__
 from quadgraph.core import load_core
 from quadgraph.file import qgraph_file, sections
-from quadgraph.mesh import file_normals, front, lod, mesh_io, solid, subdivide, wrap
-from quadgraph.mesh.file_normals import FoundNormals
+from quadgraph.mesh import front, lod, mesh_io, solid, subdivide, wrap
+from quadgraph.mesh.looks import file_normals
+from quadgraph.mesh.looks.file_normals import COMPUTED, FoundNormals
 from quadgraph.mesh.surface import MesherInfo, Repair, SourceMesh, Surface
 from quadgraph.tets import exchange, graph, ordering, relax
 from quadgraph.tets.polygrid import build as polygrid
@@ -110,7 +111,7 @@ class Prepared:
     surface: Surface
     repairs: list[Repair]
     front: float
-    normals: FoundNormals = field(default_factory=lambda: FoundNormals("angle"))
+    normals: FoundNormals = COMPUTED
 
 
 def bake(
@@ -170,7 +171,7 @@ def prepare(
 def _normals(mesh: Path, source: SourceMesh, surface: Surface, options: BakeOptions) -> FoundNormals:
     """Those that the file gives, if they are wanted and its triangles are shown."""
     if options.normals == "angle":
-        return FoundNormals("angle")
+        return COMPUTED
     if options.wrap is not None:
         return FoundNormals("angle", note="the normals of a wrapped surface are computed")
     return file_normals.find(mesh, surface, source.frame.placed)
@@ -189,7 +190,7 @@ def write(
     if seen is not None:
         report.exchange = exchange.summary(seen, graphs[seen.level].boundary)
     with report.timed("transfers"):
-        content = sections.whole_file(graphs, prepared.surface, seen, prepared.normals.at_corners)
+        content = sections.whole_file(graphs, prepared.surface, seen, prepared.normals)
     report.normals = prepared.normals.metadata()
     more = {"normals": report.normals} | ({} if budget is None else {"budget": budget})
     finish(prepared, levels, content, options, report, more)

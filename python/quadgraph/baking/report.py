@@ -17,7 +17,7 @@ class BakeReport:
     chosen for an error that was asked for (`quadgraph.baking.budget.plan`). interior: what the
     inner tets are sized by (`quadgraph.baking.inside.metadata`), None of polygrids. polygrid: how good it is
     (`quadgraph.tets.polygrid.grid_report`), None of other meshers. normals: what those of the displayed surface are
-    (`quadgraph.mesh.file_normals.FoundNormals`), None of several bodies.
+    (`quadgraph.mesh.looks.file_normals.FoundNormals`), None of several bodies.
     """
 
     output: str

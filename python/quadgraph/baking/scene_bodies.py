@@ -15,7 +15,7 @@ from quadgraph.baking.placing import BodyPlacement, Triple
 from quadgraph.base.arguments import length_mm
 from quadgraph.base.errors import InputError
 from quadgraph.base.units import UNITS_MM, UPS
-from quadgraph.mesh.file_normals import RULES
+from quadgraph.mesh.looks.file_normals import RULES
 from quadgraph.mesh.mesh_names import SUFFIXES, is_mesh
 
 _LIES = ("position", "rotation", "scale")

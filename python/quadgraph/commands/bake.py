@@ -149,8 +149,8 @@ def _add_mesh_options(parser: argparse.ArgumentParser) -> None:
         choices=("file", "angle"),
         default="file",
         help="of the displayed surface: those of the mesh file (vn of OBJ, nx ny nz of PLY, NORMAL of glTF) where it "
-        "gives some on the right side of their triangles, and smooth ones up to edges of 40 degrees elsewhere; angle: "
-        "the latter everywhere (default: %(default)s)",
+        "gives some on the right side of their triangles, with the normal texture of glTF, and smooth ones up to edges "
+        "of 40 degrees elsewhere; angle: the latter everywhere (default: %(default)s)",
     )
     parser.add_argument(
         "--front",
@@ -328,7 +328,7 @@ def _print_report(report: BakeReport) -> None:
     for note in report.notes:
         console.print(note, markup=False, soft_wrap=True)
     if report.normals:
-        from quadgraph.mesh import file_normals
+        from quadgraph.mesh.looks import file_normals
 
         console.print(file_normals.sentence(report.normals), markup=False, soft_wrap=True)
     if report.polygrid:

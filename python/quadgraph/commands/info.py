@@ -80,7 +80,7 @@ def printable(text: str) -> str:
 
 def _print_facts(name: str, facts: dict[str, Any]) -> None:
     from quadgraph.baking import inside
-    from quadgraph.mesh import file_normals
+    from quadgraph.mesh.looks import file_normals
 
     console, metadata = Console(highlight=False), facts["metadata"]
     source, mesher = metadata["source"], metadata["mesher"]

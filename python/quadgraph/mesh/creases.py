@@ -8,6 +8,7 @@ from quadgraph.mesh.surface import Surface
 
 CREASE_DEGREES = 40.0  # between the normals of two triangles
 _SAME_NORMAL = 1e-3  # normals of a file that are nearer than this, in each coordinate, are one
+_SAME_PLACE = 1e-6  # places in a texture, the same
 
 
 def creases(surface: Surface) -> np.ndarray:
@@ -33,18 +34,24 @@ def corner_normals(surface: Surface, sharp: np.ndarray) -> np.ndarray:
     return unit(sums)[fan]
 
 
-def parted(surface: Surface, given: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def parted(
+    surface: Surface, given: np.ndarray | None = None, more: np.ndarray | None = None
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """A closed surface with a vertex for each side of its edges: the old vertex of each, triangles, unit normals.
 
-    given: (m, 3, 3) unit normals at corners, which win, 0 where there is none: a vertex is parted by them alone. The
-    old vertices come first, in their order. (n,), (m, 3) and (n, 3).
+    given: (m, 3, 3) unit normals at corners, which win, 0 where there is none: a vertex is parted by them alone; more:
+    (m, 3, c) what else parts it. The old vertices come first, in their order. (n,), (m, 3) and (n, 3).
     """
     sharp = creases(surface)
-    return parted_by(surface, surface.fans(sharp), corner_normals(surface, sharp), given)
+    return parted_by(surface, surface.fans(sharp), corner_normals(surface, sharp), given, more)
 
 
 def parted_by(
-    surface: Surface, sides: np.ndarray, normals: np.ndarray, given: np.ndarray | None = None
+    surface: Surface,
+    sides: np.ndarray,
+    normals: np.ndarray,
+    given: np.ndarray | None = None,
+    more: np.ndarray | None = None,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """As `parted`, of any surface whose corners are of the sides (m, 3), with normals (m, 3, 3) that are of them."""
     if given is not None:
@@ -52,6 +59,9 @@ def parted_by(
         rows = np.column_stack([surface.triangles[known], np.round(given[known] / _SAME_NORMAL)])
         sides, normals = sides.copy(), np.where(known[:, :, None], given, normals)
         sides[known] = sides.max() + 1 + np.unique(rows, axis=0, return_inverse=True)[1].reshape(-1)
+    if more is not None:
+        rows = np.concatenate([sides[:, :, None], np.round(more / _SAME_PLACE)], axis=2)
+        sides = np.unique(rows.reshape(-1, rows.shape[2]), axis=0, return_inverse=True)[1].reshape(sides.shape)
     _, first, side = np.unique(sides.ravel(), return_index=True, return_inverse=True)
     vertex = surface.triangles.ravel()[first]
     further = np.ones(len(first), bool)

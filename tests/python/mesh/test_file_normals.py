@@ -13,8 +13,8 @@ from quadgraph.baking.bodies import BodyMesh, bake_bodies
 from quadgraph.baking.placing import BodyPlacement
 from quadgraph.base.errors import InputError
 from quadgraph.file import qgraph_file
-from quadgraph.mesh import file_normals
 from quadgraph.mesh.creases import parted, unit
+from quadgraph.mesh.looks import file_normals
 from quadgraph.mesh.surface import FileFrame, Surface
 from shapes import cube, icosphere, join, moved, write_obj
 

@@ -5,19 +5,21 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from quadgraph.base.errors import InputError
 from quadgraph.mesh import gltf_file
 from quadgraph.mesh.creases import unit
+from quadgraph.mesh.looks import normal_texture
+from quadgraph.mesh.looks.carried import carried
+from quadgraph.mesh.looks.normal_texture import NormalTexture
 from quadgraph.mesh.mesh_text import read_obj_normals
 from quadgraph.mesh.ply import read_ply_normals
 from quadgraph.mesh.surface import Surface
 
 RULES = ("file", "angle")
-_NEAR_SHARE = 2e-6  # of the diagonal: what a repair may move a vertex by when it joins near ones
 _LEAST_COSINE = 0.1  # of a plausible normal with its triangle's: on the right side, if by little
 _TRIANGLES = 4  # mode of a primitive of glTF
 _NEXT_STEP = "; write the mesh again, or bake it with --normals angle"
@@ -29,12 +31,19 @@ Soup = tuple[np.ndarray, np.ndarray]
 class FoundNormals:
     """Unit normals (m, 3, 3) at the corners of a surface's triangles, 0 where the file gives none that can be true.
 
-    rule: "file", or "angle" where none is used; note: a sentence for the user on what was not taken, or "".
+    rule: "file", or "angle" where none is used; note: a sentence for the user on what was not taken, or ""; texture:
+    what makes them lean further.
     """
 
     rule: str
     at_corners: np.ndarray | None = None
     note: str = ""
+    texture: NormalTexture | None = None
+
+    @property
+    def parting(self) -> np.ndarray | None:
+        """What parts vertices besides normals, as creases.parted takes it."""
+        return None if self.texture is None else self.texture.places
 
     @property
     def share(self) -> float:
@@ -45,16 +54,21 @@ class FoundNormals:
         """These, by a rotation of vectors (..., 3)."""
         return self if self.at_corners is None else replace(self, at_corners=turn(self.at_corners))
 
-    def metadata(self) -> dict[str, str | float]:
+    def metadata(self) -> dict[str, Any]:
         """What a .qgraph keeps of it as `normals`."""
-        return {"rule": self.rule, "share": round(self.share, 4)}
+        found: dict[str, Any] = {"rule": self.rule, "share": round(self.share, 4)}
+        return found if self.texture is None else found | {"texture": list(self.texture.pixels.shape[1::-1])}
+
+
+COMPUTED = FoundNormals("angle")
 
 
 def sentence(said: dict) -> str:
     """What to tell of a file's metadata `normals`."""
-    if said["rule"] == "angle":
-        return "normals: computed, smooth up to edges of 40 degrees"
-    return f"normals: the mesh file's at {100 * said['share']:.4g}% of the corners, else by edges of 40 degrees"
+    text = "normals: computed, smooth up to edges of 40 degrees"
+    if said["rule"] == "file":
+        text = f"normals: the mesh file's at {100 * said['share']:.4g}% of the corners, else by edges of 40 degrees"
+    return text + (f"; its normal texture of {said['texture'][0]} x {said['texture'][1]}" if "texture" in said else "")
 
 
 def check(rule: str) -> None:
@@ -75,50 +89,39 @@ def read(path: Path) -> Soup | None:
 def find(path: Path, surface: Surface, placed: Callable[[np.ndarray], np.ndarray]) -> FoundNormals:
     """Normals that a file gives at the corners of `surface`, made of it with its corners moved by 1e-6 at most.
 
-    placed: from vectors (..., 3) of the file to mm, y up. Raises InputError for normals that cannot be read.
+    With its normal texture, where it has one. placed: from vectors (..., 3) of the file to mm, y up. Raises InputError
+    for normals that cannot be read.
     """
+    normals = _find(path, surface, placed)
+    texture, note = normal_texture.find(path, surface, placed)
+    return replace(normals, texture=texture, note="; ".join(filter(None, (normals.note, note))))
+
+
+def _find(path: Path, surface: Surface, placed: Callable[[np.ndarray], np.ndarray]) -> FoundNormals:
     soup = read(path)
     if soup is None:
         return FoundNormals("angle")
-    carried = _carried(placed(soup[0]), placed(soup[1]), surface)
-    given = carried.any(axis=2)
+    found = carried(placed(soup[0]), _unit(placed(soup[1])), surface)
+    given = found.any(axis=2)
     if not given.any():
         return FoundNormals("angle", note=f"{path.name}: its normals are of no length, or at no corner that is left")
-    right = given & (np.einsum("ijk,ik->ij", carried, unit(surface.doubled_normals)) > _LEAST_COSINE)
+    right = given & (np.einsum("ijk,ik->ij", found, unit(surface.doubled_normals)) > _LEAST_COSINE)
     if 2 * right.sum() < given.sum():
         wrong = 100 * (1 - right.sum() / given.sum())
         return FoundNormals(
             "angle", note=f"{path.name}: {wrong:.3g}% of its normals point into their triangles, none is taken"
         )
-    carried[~right] = 0
+    found[~right] = 0
     missing = int((~right).sum())
     note = f"{path.name}: {missing:,} of {right.size:,} corners have no normal on the right side; theirs are computed"
-    return FoundNormals("file", carried, note if missing else "")
+    return FoundNormals("file", found, note if missing else "")
 
 
-def _carried(corners: np.ndarray, normals: np.ndarray, surface: Surface) -> np.ndarray:
-    """(m, 3, 3) unit normals at the corners of `surface`, 0 where no triangle of the soup lies over the same places."""
-    places, place_of = np.unique(surface.vertices, axis=0, return_inverse=True)
-    found, near = np.zeros((*surface.triangles.shape, 3)), _NEAR_SHARE * surface.diagonal
-    finite = np.flatnonzero(np.isfinite(corners).all(axis=(1, 2)))
-    corners = corners[finite].astype(np.float32).astype(np.float64)  # as the surface's are rounded
-    place = cKDTree(places).query(corners.reshape(-1, 3), distance_upper_bound=near)[1].reshape(-1, 3)
-    whole = (place < len(places)).all(axis=1)
-    theirs, rows = place[whole], finite[whole]
-    ours = place_of.reshape(-1)[surface.triangles]
-    both, group = np.unique(np.sort(np.concatenate([theirs, ours]), axis=1), axis=0, return_inverse=True)
-    group = group.reshape(-1)
-    first = np.full(len(both), -1)
-    first[group[: len(theirs)][::-1]] = np.arange(len(theirs))[::-1]
-    source = first[group[len(theirs) :]]
-    known = np.flatnonzero(source >= 0)
-    match = source[known]
-    with np.errstate(invalid="ignore", over="ignore"):  # what is no number is left out below
-        vectors = unit(normals[rows[match]])
-    at = (ours[known][:, :, None] == theirs[match][:, None, :]).argmax(axis=2)
-    taken = np.take_along_axis(vectors, at[:, :, None], axis=1)
-    taken[~(np.abs(np.linalg.norm(taken, axis=2) - 1) < 1e-6)] = 0
-    found[known] = taken
+def _unit(normals: np.ndarray) -> np.ndarray:
+    """At unit length; 0 for what has none that can be told."""
+    with np.errstate(invalid="ignore", over="ignore"):
+        found = unit(normals)
+        found[~(np.abs(np.linalg.norm(found, axis=-1) - 1) < 1e-6)] = 0
     return found
 
 
