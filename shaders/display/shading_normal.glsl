@@ -9,7 +9,10 @@ const float LEAST_MIRRORED = 0.01, SHARE_MIRRORED = 0.9;
 // what it is with all that is within the pixel: the variance of slopes adds to half the square of alpha [Olano 2010].
 vec2 slopes_at(vec2 place, float texels) {
   NormalMapRef map = SCENE.normal_map;
-  vec3 texel = load_image(map.texels, tap_of(map.image, place, texels, map.by_mesh != 0u));
+  float level = log2(max(texels, 1.0)), finer = exp2(floor(level));
+  bool repeated = map.by_mesh != 0u;
+  vec3 texel = mix(load_image(map.texels, tap_of(map.image, place, finer, repeated)),
+                   load_image(map.texels, tap_of(map.image, place, 2.0 * finer, repeated)), level - floor(level));
   float spread = max(texel.z - texel.x * texel.x - texel.y * texel.y, 0.0);
   roughness = min(sqrt(roughness * roughness + map.strength * map.strength * spread), 1.0);
   return map.strength * vec2(texel.x, texel.y);
@@ -20,7 +23,8 @@ vec2 slopes_at(vec2 place, float texels) {
 vec3 textured_normal(vec3 n, vec3 place, vec3 place_right, vec3 place_below, vec3 to_right, vec3 to_below) {
   NormalMapRef map = SCENE.normal_map;
   float area = place_right.x * place_below.y - place_below.x * place_right.y;
-  vec3 along = place_below.y * to_right - place_right.y * to_below, down = place_right.x * to_below - place_below.x * to_right;
+  vec3 along = place_below.y * to_right - place_right.y * to_below;
+  vec3 down = place_right.x * to_below - place_below.x * to_right;
   along = (area < 0.0 ? -1.0 : 1.0) * (along - dot(along, n) * n);
   float size = length(along);
   if (place.z < 0.5 || area == 0.0 || size == 0.0) return n;
@@ -32,8 +36,8 @@ vec3 textured_normal(vec3 n, vec3 place, vec3 place_right, vec3 place_below, vec
   return normalize(n + (slopes.x * along + slopes.y * top) / size);
 }
 
-// Normal n leaned as the map says at `shape`, of NormalMapRef's `rest`; how that and the place in the scene, mm, differ from
-// pixel to pixel. What is finer makes `roughness` more.
+// Normal n leaned as the map says at `shape`, of NormalMapRef's `rest`; how that and the place in the scene, mm, differ
+// from pixel to pixel. What is finer makes `roughness` more.
 //
 // The slopes of a picture in a box are of a height along the normal: with the gradients of the picture's coordinates on the surface
 // (Mikkelsen 2010) the same is right on any side of the body, and where that is deformed.

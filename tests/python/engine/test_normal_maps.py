@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import subprocess
 from pathlib import Path
 
 import jsonschema
@@ -10,7 +11,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
+import quadgraph
 from baked import write_levels
+from engine_program import ENGINE, assert_refused
 from light_truth import write_hdr
 from quadgraph import cli
 from quadgraph.base.errors import InputError
@@ -172,6 +175,18 @@ def test_what_is_finer_than_a_pixel_makes_the_surface_rougher(folder):
     assert near != pytest.approx(mean(shown(folder, None).specular), rel=0.1)
 
 
+def test_nothing_leaps_where_a_pixel_shows_more_texels(folder):
+    """From one mip level to the next in small steps; the nearest one would change at 1.41 texels a sample."""
+
+    def seen(texels: float) -> float:
+        shows = texels * 48 * BOX["size"][0] / 1024  # mm of 24 pixels with 2 samples each
+        return float(np.asarray(shown(folder, {"image": "pyramids.png", "strength": 3}, shows=shows).specular).mean())
+
+    fine, before, after, coarse = map(seen, (1.1, 1.38, 1.45, 2.2))
+    assert abs(fine - coarse) > 0.04 * coarse
+    assert abs(before - after) < abs(fine - coarse) / 3
+
+
 def test_what_is_mirrored_of_a_sky_goes_by_the_map(folder):
     """Leaning by half the angle shows what is the angle aside: as a sky that is turned."""
 
@@ -266,3 +281,24 @@ def test_what_is_no_normal_map_is_said(folder, changed, write, said):
     (folder / "bad.json").write_text(json.dumps(scene))
     with pytest.raises(InputError, match="bad.json: .*" + said):
         core.SceneFile(folder / "bad.json")
+
+
+def test_python_and_the_standalone_program_take_it(folder, tmp_path):
+    body, image = folder / "plate.qgraph", str(folder / "leaning.png")
+    with quadgraph.Engine(body, device="cpu") as engine:
+        engine.material = "marble"
+        engine.solve(correction=False)
+        found = [
+            np.asarray(engine.render("0,0", width=32, height=32, samples=4, **picture).specular).sum()
+            for picture in ({}, {"normal_map": {"image": image}}, {"normal_map": {"image": image, "strength": 0}})
+        ]
+    assert abs(found[1] / found[0] - 1) > 0.02
+    assert found[2] == pytest.approx(found[0], rel=1e-3)
+    assert ENGINE is not None
+    program = [ENGINE, str(body), "--headless", "--size", "16x16", "--normal-map"]
+    done = subprocess.run([*program, image, "-o", str(tmp_path / "a.png")], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    refused = [*program, str(tmp_path / "none.png"), "-o", str(tmp_path / "b.png")]
+    done = subprocess.run(refused, capture_output=True, text=True, check=False)
+    assert_refused(done, "normal-map: ", "none.png: cannot be read")
+    assert not (tmp_path / "b.png").exists()
