@@ -37,12 +37,13 @@ vec3 textured_normal(vec3 n, vec3 place, vec3 place_right, vec3 place_below, vec
 }
 
 // Normal n leaned as the map says at `shape`, of NormalMapRef's `rest`; how that and the place in the scene, mm, differ
-// from pixel to pixel. What is finer makes `roughness` more.
+// from pixel to pixel. What is finer makes `roughness` more; `mesh_normal` becomes n.
 //
 // The slopes of a picture in a box are of a height along the normal: with the gradients of the picture's coordinates on the surface
 // (Mikkelsen 2010) the same is right on any side of the body, and where that is deformed.
 vec3 mapped_normal(vec3 n, vec3 shape, vec3 shape_right, vec3 shape_below, vec3 to_right, vec3 to_below) {
   NormalMapRef map = SCENE.normal_map;
+  mesh_normal = n;
   if (map.by_mesh != 0u) return textured_normal(n, shape, shape_right, shape_below, to_right, to_below);
   vec3 place = in_box(map.box, shape);
   if (any(greaterThan(abs(place), map.box.half_size))) return n;

@@ -49,11 +49,12 @@ void main() {
     vec3 point, outward;
     if (last_cut(field.tools, position, point, outward)) {
       at = point;
-      n = outward;
+      n = mesh_normal = outward;
       across = vec3(0);
     }
   }
   vec3 v = towards_eye(SCENE.eye, at);
+  if (dot(n, v) < 0.0 && !gl_FrontFacing) mesh_normal = -mesh_normal;
   if (dot(n, v) < 0.0) n = gl_FrontFacing ? normalize(n - 1.001 * dot(n, v) * v) : -n;
   n = seen_normal(n, across, v);
   float share = fresnel_transmittance(clamp(dot(n, v), 0.0, 1.0), eta) / SCENE.radiance_norm;

@@ -107,7 +107,8 @@ def reflected(n: np.ndarray, v: np.ndarray, light: np.ndarray, alpha: float) -> 
     nl, nv, nh, a2 = n @ light, n @ v, n @ h, alpha**2
     d = a2 / (np.pi * (nh**2 * (a2 - 1) + 1) ** 2)
     smith = [np.sqrt(1 + a2 * (1 / c**2 - 1)) for c in (nl, nv)]
-    return d * reflectance(v @ h) * 2 / sum(smith) / (4 * nl * nv) * nl
+    g = min(light[2] / (nl * n[2]), 1)  # of the plate that leans (Chiang et al. 2019)
+    return d * reflectance(v @ h) * 2 / sum(smith) / (4 * nl * nv) * nl * (g + g**2 - g**3)
 
 
 def leaned(slopes: np.ndarray, v: np.ndarray) -> np.ndarray:
@@ -173,6 +174,15 @@ def test_what_is_finer_than_a_pixel_makes_the_surface_rougher(folder):
     near = np.asarray(shown(folder, {"image": "pyramids.png"}, shows=0.2).specular).mean(axis=(0, 1))
     assert near == pytest.approx(mean(far.specular), rel=0.05)
     assert near != pytest.approx(mean(shown(folder, None).specular), rel=0.1)
+
+
+def test_slopes_get_no_light_through_the_body(folder):
+    """A lamp behind the plate, towards which a slope leans."""
+    behind = [{"type": "directional", "direction": [-1, 0, 0.2], "irradiance": 2.0}]
+    picture = shown(folder, {"image": "steep.png"}, lights=behind)
+    assert np.abs(picture.specular).max() == 0
+    before = [{"type": "directional", "direction": [-1, 0, -0.2], "irradiance": 2.0}]
+    assert np.min(shown(folder, {"image": "steep.png"}, lights=before).specular) > 1e-3
 
 
 def test_nothing_leaps_where_a_pixel_shows_more_texels(folder):
