@@ -131,6 +131,25 @@ def test_files_without_normals_are_as_before(tmp_path):
     assert file_normals.read(tmp_path / "b.off") is None
 
 
+def test_obj_files_are_read_in_whatever_way_they_are_written(tmp_path):
+    """Corners without a normal, counted from the end, lines that are moved to the right, polygons of several sizes."""
+    head = ["v 0 0 0", "v 1 0 0", "v 1 1 0", "v 0 1 0", "v .5 .5 1"]
+    normals = ["vn 0 0 -2", "vn 1 0 1", "vn 0 1 1"]
+    plain = "\n".join([*head, *normals, "f 1//1 2//2 3//3", "f 1/7/1 3/8/3 4/9/2"])
+    (tmp_path / "plain.obj").write_text(plain)
+    other = "\n".join([*head, "  vn 0 0 -2", *normals[1:], "f -5//-3 -4//-2 -3//-1", "f 1//1 3//3 4//2"])
+    (tmp_path / "other.obj").write_text(other)
+    for found, expected in zip(
+        *(file_normals.read(tmp_path / f"{name}.obj") for name in ("plain", "other")), strict=True
+    ):
+        assert np.array_equal(found, expected)
+    (tmp_path / "some.obj").write_text("\n".join([*head, *normals, "f 1//1 2 3/1/3", "f 1//1 2//2 3//3 4//1"]))
+    soup = file_normals.read(tmp_path / "some.obj")
+    assert soup is not None
+    assert soup[1].tolist()[0] == [[0, 0, -2], [0, 0, 0], [0, 1, 1]]
+    assert soup[0].shape == (3, 3, 3)
+
+
 def refused(path: Path, words: str) -> None:
     with pytest.raises(InputError, match=words) as error:
         found(path, icosphere(1, 10))

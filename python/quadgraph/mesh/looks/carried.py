@@ -23,7 +23,9 @@ def carried(corners: np.ndarray, values: np.ndarray, surface: Surface) -> np.nda
     whole = (place < len(places)).all(axis=1)
     theirs, rows = place[whole], finite[whole]
     ours = place_of.reshape(-1)[surface.triangles]
-    both, group = np.unique(np.sort(np.concatenate([theirs, ours]), axis=1), axis=0, return_inverse=True)
+    low, middle, high = np.sort(np.concatenate([theirs, ours]), axis=1).T
+    pair = np.unique(low * len(places) + middle, return_inverse=True)[1].reshape(-1)
+    both, group = np.unique(pair * len(places) + high, return_inverse=True)
     group = group.reshape(-1)
     first = np.full(len(both), -1)
     first[group[: len(theirs)][::-1]] = np.arange(len(theirs))[::-1]
