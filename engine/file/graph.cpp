@@ -60,6 +60,15 @@ Level read_level(const SectionTable& table, std::uint32_t index, bool coarsest) 
   return level;
 }
 
+void read_texture(const SectionTable& table, DisplayMesh& mesh) {
+  mesh.texture_places = vectors<glm::vec3>(table, "display/texture_places");
+  const std::uint64_t width = table.columns("display/normal_texture");
+  if (width == 0 || width % 3 != 0) fail_format(table.file(), "display/normal_texture", "rows of RGB expected");
+  mesh.normal_texture = table.rows<std::uint8_t>("display/normal_texture", width);
+  mesh.texture_columns = static_cast<std::uint32_t>(width / 3);
+  mesh.texture_rows = static_cast<std::uint32_t>(mesh.normal_texture.size() / width);
+}
+
 // Without levels it is tied to nothing.
 DisplayMesh read_display(const SectionTable& table, bool tied) {
   DisplayMesh mesh{vectors<glm::vec3>(table, "display/vertices"),
@@ -67,6 +76,7 @@ DisplayMesh read_display(const SectionTable& table, bool tied) {
                    vectors<glm::uvec3>(table, "display/triangles"),
                    {},
                    {}};
+  if (table.has("display/texture_places")) read_texture(table, mesh);
   if (!tied) return mesh;
   mesh.face = table.rows<std::uint32_t>("display/face", 1);
   mesh.barycentric = vectors<glm::vec3>(table, "display/barycentric");
@@ -98,6 +108,9 @@ std::vector<std::string> section_names(const SectionTable& table, std::uint32_t 
     names.push_back(std::string("display/") + field);
   }
   if (levels == 0) names.resize(names.size() - 2);
+  for (const char* field : {"texture_places", "normal_texture"}) {
+    if (table.has("display/texture_places")) names.push_back(std::string("display/") + field);
+  }
   return names;
 }
 

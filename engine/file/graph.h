@@ -69,6 +69,11 @@ struct DisplayMesh {
   std::span<const glm::uvec3> triangles;
   std::span<const std::uint32_t> face;     // per vertex: outside face of level 0
   std::span<const glm::vec3> barycentric;  // per vertex: position in that face
+  // A normal map by coordinates of the mesh; empty where there is none. Per vertex the place in the picture, which is
+  // repeated beyond 0 to 1, the second downwards; and 1 where it lies, else 0.
+  std::span<const glm::vec3> texture_places{};
+  std::span<const std::uint8_t> normal_texture{};  // RGB of rows, the first at 0
+  std::uint32_t texture_columns = 0, texture_rows = 0;
 };
 
 class QuadGraph {

@@ -180,6 +180,11 @@ template std::span<const float> SectionTable::rows(const std::string&, std::uint
 template std::span<const std::uint32_t> SectionTable::rows(const std::string&, std::uint64_t) const;
 template std::span<const std::uint8_t> SectionTable::rows(const std::string&, std::uint64_t) const;
 
+std::uint64_t SectionTable::columns(const std::string& name) const {
+  const auto found = sections_.find(name);
+  return found == sections_.end() || found->second.rank != 2 ? 0 : found->second.shape[1];
+}
+
 std::string_view SectionTable::text(const std::string& name) const {
   const QgraphSection& section = find(name, SectionType::u8, 1);
   return {reinterpret_cast<const char*>(bytes_.data() + section.offset), section.size};

@@ -34,6 +34,9 @@ class SectionTable {
   template <typename T>
   std::span<const T> rows(const std::string& name, std::uint64_t columns) const;
 
+  // Columns of a section of rank 2; 0 where it is missing or of rank 1.
+  std::uint64_t columns(const std::string& name) const;
+
   std::string_view text(const std::string& name) const;
 
  private:

@@ -240,6 +240,23 @@ void validate_seen_once(std::span<const Level> levels, const std::string& file) 
   }
 }
 
+void validate_texture(const DisplayMesh& display, const Place& place) {
+  constexpr float farthest = 1e6f;
+  constexpr std::uint32_t most = 4096;  // texels a side
+  expect_rows(place, "texture_places", display.texture_places.size(), display.vertices.size());
+  check_finite(place, "texture_places", display.texture_places);
+  for (std::size_t i = 0; i < display.texture_places.size(); ++i) {
+    const glm::vec3& at = display.texture_places[i];
+    if (at.z != 0 && at.z != 1) place.fail("texture_places", i, "the third number is neither 0 nor 1");
+    if (std::max(std::abs(at.x), std::abs(at.y)) > farthest) place.fail("texture_places", i, "beyond 1e6");
+  }
+  if (std::max(display.texture_columns, display.texture_rows) > most) {
+    fail_format(place.file, place.prefix + "normal_texture",
+                "found " + std::to_string(display.texture_columns) + "x" + std::to_string(display.texture_rows) +
+                    " texels, allowed are 1 to " + std::to_string(most) + " a side");
+  }
+}
+
 void validate_display(const DisplayMesh& display, const Level* finest, const std::string& file) {
   const Place place{file, "display/"};
   const std::size_t count = display.vertices.size();
@@ -256,6 +273,7 @@ void validate_display(const DisplayMesh& display, const Level* finest, const std
     if (finest != nullptr) check_index(place, "face", i, display.face[i], finest->faces.size());
     if (std::abs(glm::length(display.normals[i]) - 1.0f) > 1e-3f) place.fail("normals", i, "not of unit length");
   }
+  if (!display.texture_places.empty()) validate_texture(display, place);
   if (finest == nullptr) return;
   const auto* weights = reinterpret_cast<const float*>(display.barycentric.data());
   check_weights(place, "barycentric", {weights, 3 * count}, 3);

@@ -23,6 +23,7 @@
 #include "engine/optics/optical_grid.h"
 #include "engine/render/body_material.h"
 #include "engine/render/display/camera.h"
+#include "engine/render/display/normal_map.h"
 #include "engine/render/display/pick.h"
 #include "engine/render/display/surface_roughness.h"
 #include "engine/render/inside/show.h"
@@ -77,6 +78,7 @@ struct RenderOptions {
   // no limit.
   double converge = 0, time_limit = 0;
   std::optional<RoughnessMap> roughness_map{};
+  std::optional<NormalMap> normal_map{};
 
   bool operator==(const RenderOptions&) const = default;
 };

@@ -18,6 +18,7 @@
 #include "engine/render/picture/ground.h"
 #include "engine/render/picture/picture_mean.h"
 #include "engine/render/picture/rasteriser.h"
+#include "engine/render/picture/surface_maps.h"
 #include "engine/render/picture/surroundings.h"
 #include "engine/render/verdict.h"
 
@@ -38,6 +39,7 @@ struct Engine::Implementation {
         irradiance(device),
         light_samples(device),
         rasteriser(device),
+        maps(device, graph),
         paths(device) {
     shadows.update(mesh, {{}, bounds});
   }
@@ -57,6 +59,7 @@ struct Engine::Implementation {
   LightSamples light_samples;
   std::optional<HiddenSky> hidden;  // where there is an environment, made at first use
   Rasteriser rasteriser;
+  SurfaceMaps maps;
 
   std::string material;
   gpu::Material of_text{};                      // what `material` says, where it is the text of one
@@ -80,14 +83,12 @@ struct Engine::Implementation {
   std::optional<RadianceProbe> probe;        // made at first use
   device::Buffer triangle_face;              // display_faces.h, made at first use
   std::vector<PassStats> deformation_passes, irradiance_passes, light_passes, gather_passes, render_passes;
-  bool deformed = false;                                // since the last solve
-  std::string deformation;                              // in words
-  std::optional<Ground> ground;                         // made at first use
-  std::optional<Surroundings> surroundings;             // made at first use
-  std::shared_ptr<const ImagePyramid> roughness_image;  // of the last picture
-  device::Buffer roughness_texels, rest_vertices;       // at first use
-  std::optional<Legend> legend;                         // of the last picture
-  FalseColours false_colours;                           // the same
+  bool deformed = false;                     // since the last solve
+  std::string deformation;                   // in words
+  std::optional<Ground> ground;              // made at first use
+  std::optional<Surroundings> surroundings;  // made at first use
+  std::optional<Legend> legend;              // of the last picture
+  FalseColours false_colours;                // the same
   PathMethod paths;
   std::optional<Workspace> motion_work;      // of a surface without levels, made at first use
   std::vector<gpu::PathTool> cut_tools;      // what is cut away
@@ -273,21 +274,6 @@ struct Engine::Implementation {
     for (const PassStats& pass : passes) add(render_passes, pass);
   }
 
-  PlacedRoughness placed_roughness(const RoughnessMap& map) {
-    if (rest_vertices.size() == 0) {
-      rest_vertices = device::upload<glm::vec3>(device, graph.display().vertices, "display/at rest");
-    }
-    if (roughness_image != map.image) {
-      roughness_texels = device::upload<glm::vec3>(device, map.image->texels, "picture/roughness image");
-      roughness_image = map.image;
-    }
-    return {roughness_texels,
-            rest_vertices,
-            image_box(map.placement),
-            {0, map.image->columns, map.image->rows, map.image->levels},
-            map.roughness};
-  }
-
   const GatherField& gather(Gather what) {
     std::vector<PassStats> passes;
     const GatherField& field = levels().gather(what, passes);
@@ -306,13 +292,34 @@ struct Engine::Implementation {
     return body_roughness ? body_roughness->least() : stated_roughness(material).value_or(default_roughness);
   }
 
+  // The picture's, or the file's own.
+  const std::optional<NormalMap>& normals(const RenderOptions& render) {
+    return render.normal_map ? render.normal_map : maps.own_normals();
+  }
+
+  // Alphas of the two pictures of an environment that are mixed to what is mirrored; the second is 0 where all of the
+  // surface is as rough.
+  glm::vec2 mirrored(const RenderOptions& render) {
+    const BodyRoughness* own = own_roughness(render);
+    const glm::vec2 found{roughness(render), render.roughness_map ? render.roughness_map->roughness
+                                             : own                ? own->most()
+                                                                  : 0};
+    const std::optional<NormalMap>& map = normals(render);
+    if (!map) return found;
+    const float least = found.y > 0 ? std::min(found.x, found.y) : found.x, most = std::max(found.x, found.y);
+    return {least, std::min(std::sqrt(most * most + map->spread()), 1.0f)};
+  }
+
   // The body as it looks; how its radiance left, never automatic.
   Radiance draw_surface(const Camera& camera, const RenderOptions& render, std::uint32_t frame) {
     std::optional<PlacedRoughness> placed;
-    if (render.roughness_map) placed.emplace(placed_roughness(*render.roughness_map));
+    if (render.roughness_map) placed.emplace(maps.placed(*render.roughness_map));
     const BodyRoughness* own = own_roughness(render);
     if (auto by_body = own ? own->placed() : std::nullopt) placed.emplace(*by_body);
     const PlacedRoughness* there = placed ? &*placed : nullptr;
+    std::optional<PlacedNormals> leaning;
+    if (const auto& map = normals(render)) leaning.emplace(maps.placed(*map));
+    const PlacedNormals* normals = leaning ? &*leaning : nullptr;
     if (report->path) {
       if (render.radiance == Radiance::gathered || render.radiance == Radiance::single) {
         throw InputError("radiance: with shortest-path nothing is gathered, allowed are lambertian, auto");
@@ -323,7 +330,9 @@ struct Engine::Implementation {
                                        .shadows = shadows,
                                        .eta = eta[0],
                                        .roughness = roughness(render),
-                                       .placed_roughness = there},
+                                       .placed_roughness = there,
+                                       .placed_normals = normals,
+                                       .mirrored = mirrored(render)},
                              camera, render.width, render.height));
       return Radiance::lambertian;
     }
@@ -343,6 +352,8 @@ struct Engine::Implementation {
                                        .shadows = shadows,
                                        .roughness = roughness(render),
                                        .placed_roughness = there,
+                                       .placed_normals = normals,
+                                       .mirrored = mirrored(render),
                                        .gather = view_rays ? &*view_rays : nullptr,
                                        .transmission_roughness = render.transmission_roughness,
                                        .frame = frame,
@@ -359,9 +370,8 @@ struct Engine::Implementation {
 
   void draw_picture(const View& from, const Camera& camera, const RenderOptions& render, std::uint32_t frame) {
     legend.reset();
-    const auto& map = render.roughness_map;
-    const BodyRoughness* own = own_roughness(render);
-    images.set_roughness(roughness(render), map ? map->roughness : own ? own->most() : 0);
+    const glm::vec2 blurred = mirrored(render);
+    images.set_roughness(blurred.x, blurred.y);
     radiance = draw_surface(camera, render, frame);
     if (render.ground) {
       if (!ground) ground.emplace(device);

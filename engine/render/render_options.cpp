@@ -24,6 +24,17 @@ void check_convergence(const RenderOptions& options) {
   }
 }
 
+void check_normal_map(const RenderOptions& options) {
+  const auto& map = options.normal_map;
+  if (!map) return;
+  if (!map->slopes) throw InputError("normal_map, image: found none");
+  if (!normal_map_strength_range.contains(map->strength)) {
+    throw InputError("normal_map, strength: found " + number_text(map->strength) + ", expected " +
+                     normal_map_strength_range.text());
+  }
+  if (map->placement) check_placement(*map->placement);
+}
+
 }  // namespace
 
 std::uint32_t frame_count(const View& view, const RenderOptions& options) {
@@ -48,6 +59,7 @@ void check_options(const RenderOptions& options) {
                      transmission_range.text());
   }
   check_convergence(options);
+  check_normal_map(options);
   if (!options.roughness_map) return;
   if (!options.roughness_map->image) throw InputError("roughness_map, image: found none");
   check_roughness(options.roughness_map->roughness);

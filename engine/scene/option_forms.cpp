@@ -7,6 +7,7 @@
 #include "engine/file/body_names.h"
 #include "engine/optics/material.h"
 #include "engine/render/light/lights.h"
+#include "engine/render/light/normal_map_file.h"
 #include "engine/scene/material_map.h"
 #include "engine/scene/option_members.h"
 #include "engine/scene/usual_light.h"
@@ -157,6 +158,20 @@ void set_stops(Scene& scene, const OptionValue& value) {
     scene.tone.exposure_stops = static_cast<float>(*stops);
   } else {
     scene.tone.exposure_stops = parse_exposure(text_in(value));
+  }
+}
+
+OptionValue normal_map_of(const Scene& scene) {
+  const auto& map = scene.render.normal_map;
+  if (!map || map->placement) return {};
+  return map->slopes->file.string();
+}
+
+void set_normal_map(Scene& scene, const OptionValue& value) {
+  try {
+    scene.render.normal_map = NormalMap{load_normal_map(text_in(value))};
+  } catch (const InputError& error) {
+    throw InputError(std::string("normal-map: ") + error.what());
   }
 }
 

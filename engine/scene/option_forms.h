@@ -48,6 +48,10 @@ void set_size(Scene& scene, const OptionValue& value);
 OptionValue stops_of(const Scene& scene);
 void set_stops(Scene& scene, const OptionValue& value);
 
+// The file of a normal map over all of the body; nothing where there is none, or it lies elsewhere.
+OptionValue normal_map_of(const Scene& scene);
+void set_normal_map(Scene& scene, const OptionValue& value);
+
 // The background as a text for parse_background; nothing for a gradient other than the default one.
 OptionValue background_of(const Scene& scene);
 void set_background(Scene& scene, const OptionValue& value);

@@ -243,6 +243,16 @@ void add_picture(OptionTable& table) {
        .range = transmission_range,
        .help = "roughness of the surface for light that comes out of it, GGX alpha, " + transmission_range.text() +
                "; 0: smooth; default: the roughness"});
+  table.text(
+      OptionKind::text,
+      {.name = "normal-map",
+       .member = "/picture/normal_map",
+       .keyword = "normal_map",
+       .own_form = true,
+       .metavar = "IMAGE",
+       .help = "a normal map in tangent space (.png, green to the top), laid over all of the body from its front: "
+               "what is mirrored and what is seen inside go by it. A scene file places it (docs/scene.md)"},
+      normal_map_of, set_normal_map);
   table.member<&Scene::render, &RenderOptions::radiance>({.name = "radiance",
                                                           .member = "/picture/radiance",
                                                           .keyword = "radiance",

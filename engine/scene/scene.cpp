@@ -6,6 +6,7 @@
 #include "engine/base/text.h"
 #include "engine/file/body_names.h"
 #include "engine/optics/material.h"
+#include "engine/render/light/normal_map_file.h"
 #include "engine/scene/cut_json.h"
 #include "engine/scene/deformer_json.h"
 #include "engine/scene/edit_json.h"
@@ -197,9 +198,20 @@ RoughnessMap roughness_map_from(const JsonField& field) {
   return map;
 }
 
+NormalMap normal_map_from(const JsonField& field) {
+  field.allow({"image", "placement", "strength"});
+  const JsonField image = field.at("image");
+  const std::string file = image.text();
+  NormalMap map{image.within([&] { return load_normal_map(file); })};
+  if (const auto placement = field.find("placement")) map.placement = placement_from(*placement);
+  if (const auto strength = field.find("strength")) map.strength = strength->real();
+  return map;
+}
+
 void picture_from(const JsonField& field, Scene& scene) {
-  read_members(field, "/picture", {"roughness_map", "background"}, scene);
+  read_members(field, "/picture", {"roughness_map", "normal_map", "background"}, scene);
   if (const auto map = field.find("roughness_map")) scene.render.roughness_map = roughness_map_from(*map);
+  if (const auto map = field.find("normal_map")) scene.render.normal_map = normal_map_from(*map);
   if (const auto background = field.find("background")) background_from(*background, scene.tone);
   field.within([&] {
     check_options(scene.render);
@@ -213,6 +225,10 @@ Json picture_json(const Scene& scene) {
     json["roughness_map"] = {{"image", to_json(*map->image)},
                              {"placement", to_json(map->placement)},
                              {"roughness", real_json(map->roughness)}};
+  }
+  if (const auto& map = scene.render.normal_map) {
+    json["normal_map"] = {{"image", to_json(*map->slopes)}, {"strength", real_json(map->strength)}};
+    if (map->placement) json["normal_map"]["placement"] = to_json(*map->placement);
   }
   const ToneOptions& tone = scene.tone;
   json["background"] = "transparent";

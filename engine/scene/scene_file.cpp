@@ -100,9 +100,10 @@ void each_file(Json& document, const Function& renamed) {
       }
     }
   }
-  if (document.contains("picture") && document["picture"].is_object() &&
-      document["picture"].contains("roughness_map")) {
-    for (Json* file : text_of(document["picture"]["roughness_map"], "image")) files.push_back(file);
+  for (const char* map : {"roughness_map", "normal_map"}) {
+    if (document.contains("picture") && document["picture"].is_object() && document["picture"].contains(map)) {
+      for (Json* file : text_of(document["picture"][map], "image")) files.push_back(file);
+    }
   }
   for (Json* file : files) *file = renamed(std::filesystem::path(file->get<std::string>())).string();
 }

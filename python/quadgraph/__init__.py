@@ -59,8 +59,9 @@ if TYPE_CHECKING:
     from quadgraph.baking.colours.colour_options import ColourOptions
     from quadgraph.baking.colours.colour_report import ColourReport
     from quadgraph.baking.colours.colour_volume import mesh_colours
-    from quadgraph.baking.pipeline import BakeOptions, BakeReport, bake
+    from quadgraph.baking.pipeline import BakeOptions, bake
     from quadgraph.baking.placing import BodyPlacement
+    from quadgraph.baking.report import BakeReport
     from quadgraph.base.errors import (
         DeviceError,
         FormatError,
@@ -166,7 +167,8 @@ _PLACES = {
     "quadgraph.baking.colours.colour_options": "ColourOptions",
     "quadgraph.baking.colours.colour_report": "ColourReport",
     "quadgraph.baking.colours.colour_volume": "mesh_colours",
-    "quadgraph.baking.pipeline": "BakeOptions BakeReport bake",
+    "quadgraph.baking.pipeline": "BakeOptions bake",
+    "quadgraph.baking.report": "BakeReport",
     "quadgraph.base.errors": "FormatError InputError QuadGraphError SolverError ToolError DeviceError",
 }
 

@@ -19,9 +19,7 @@ const float PI = 3.14159265;
 float roughness;  // GGX alpha here
 float eta;        // index of refraction here
 float evenly;     // share of even light that the surface here reflects towards the view
-
-// How much of the roughness here is that of an image.
-float placed_share = 0.0;
+vec3 mesh_normal;  // with NORMAL_MAP: unit, before the map made it lean
 
 // Length of a way that is seen along the box's third axis, mm.
 float across_box(ImageBox box, vec3 way) {
@@ -31,13 +29,12 @@ float across_box(ImageBox box, vec3 way) {
 // Makes `roughness` that of a point of the surface, `rest` at rest, mm; `to_right` and `to_below`: how it differs
 // from pixel to pixel.
 void place_roughness(vec3 rest, vec3 to_right, vec3 to_below) {
-  placed_share = 0.0;
   vec3 place = in_box(SURFACE.box, rest);
   float width = max(across_box(SURFACE.box, to_right), across_box(SURFACE.box, to_below));
   if (any(greaterThan(abs(place), SURFACE.box.half_size))) return;
   ImageTap tap = image_tap(SURFACE.image, in_picture(SURFACE.box, place), texels_across(SURFACE.box, SURFACE.image, width));
-  placed_share = clamp(luminance(load_image(SURFACE.texels, tap)), 0.0, 1.0);
-  roughness = mix(SCENE.roughness, SURFACE.roughness, placed_share);
+  float share = clamp(luminance(load_image(SURFACE.texels, tap)), 0.0, 1.0);
+  roughness = mix(SCENE.roughness, SURFACE.roughness, share);
 }
 
 // Cook and Torrance 1982 with the GGX distribution and height-correlated Smith masking (Walter et al. 2007, Heitz 2014)
@@ -54,6 +51,14 @@ float cook_torrance(vec3 n, vec3 v, vec3 l, float alpha2) {
   return alpha2 * reflectance * 0.5 * n_l / (PI * base * base * mask);
 }
 
+// What a slope of normal n that a map makes gets of light from l: none where the mesh is turned away from it, as what
+// hides the body from itself cannot tell there, and nearly all elsewhere (Chiang et al. 2019).
+float share_of_slope(vec3 n, vec3 l) {
+  float facing = dot(mesh_normal, l);
+  float g = clamp(facing / max(dot(n, l) * dot(n, mesh_normal), 1e-6), 0.0, 1.0);
+  return g * (1.0 + g - g * g);
+}
+
 // Square of the roughness that blurs the highlight of a patch over its width: as much as makes the highlights of
 // neighbours run into one.
 float blurred(LightRecord light, LightShape shape, vec3 position) {
@@ -65,13 +70,16 @@ float blurred(LightRecord light, LightShape shape, vec3 position) {
 vec3 reflected_environment(LightShape shape, vec3 n, vec3 v) {
   vec3 mirrored = reflect(-v, n);
   vec3 seen = environment_at(shape, ENVIRONMENT_REFLECTED, mirrored);
-  if (!PLACED_ROUGHNESS) return seen;
-  return mix(seen, environment_at(shape, ENVIRONMENT_REFLECTED_PLACED, mirrored), placed_share);
+  float range = SCENE.mirrored.y - SCENE.mirrored.x;
+  if (!(PLACED_ROUGHNESS || NORMAL_MAP) || range == 0.0) return seen;
+  float share = clamp((roughness - SCENE.mirrored.x) / range, 0.0, 1.0);
+  return mix(seen, environment_at(shape, ENVIRONMENT_REFLECTED_PLACED, mirrored), share);
 }
 
 // Towards v at a point of unit normal n that sees the share `sky` of its surroundings, W/(mm^2 sr).
 vec3 specular_radiance(vec3 position, vec3 n, vec3 v, float sky) {
-  vec3 sum = vec3(0.0);
+  vec3 sum = vec3(0.0), outwards = n;
+  if (NORMAL_MAP) outwards = mesh_normal;
   for (uint i = 0u; i < SCENE.light_count; ++i) {
     LightRecord light = SCENE.lights.at[i];
     if (light.kind == LIGHT_AMBIENT) {
@@ -88,9 +96,10 @@ vec3 specular_radiance(vec3 position, vec3 n, vec3 v, float sky) {
     float alpha2 = roughness * roughness;
     if (SHAPED && light.kind == LIGHT_PATCH) alpha2 = blurred(light, shape, position);
     float reflected = cook_torrance(n, v, incident.direction, alpha2);
+    if (NORMAL_MAP) reflected *= share_of_slope(n, incident.direction);
     if (reflected == 0.0 || incident.share <= 0.0) continue;
     if (SHAPED && light.kind == LIGHT_PROJECTOR) light.power *= projected(shape, -incident.direction, 0.0);
-    sum += reflected * light_visibility(light, SCENE.views, position, n, 1) * incident.share * light.power;
+    sum += reflected * light_visibility(light, SCENE.views, position, outwards, 1) * incident.share * light.power;
   }
   return sum;
 }

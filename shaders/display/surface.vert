@@ -10,13 +10,15 @@ layout(location = 3) out vec3 unscattered_exitance;  // W/mm^2
 layout(location = 4) out float sky;                  // share that is not hidden by the body
 layout(location = 5) out vec3 rest;                  // mm, the position at rest
 layout(location = 6) flat out uint face;             // outside face of level 0
+layout(location = 7) out vec3 shape;  // mm, the position at rest
 
 #define SCENE push.scene.at[0]
 
 void main() {
   position = SCENE.vertices.at[gl_VertexIndex];
-  rest = vec3(0);
+  rest = shape = vec3(0);
   if (PLACED_ROUGHNESS) rest = push.rest.at[gl_VertexIndex];
+  if (NORMAL_MAP) shape = SCENE.normal_map.rest.at[gl_VertexIndex];
   normal = SCENE.normals.at[gl_VertexIndex];
   face = SCENE.face.at[gl_VertexIndex];
   uvec3 corners = SCENE.faces.at[face];

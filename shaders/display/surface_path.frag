@@ -6,7 +6,8 @@ layout(push_constant, scalar) uniform Block { SurfacePathPush push; };
 #define SURFACE push.surface
 layout(location = 0) in vec3 position;  // mm
 layout(location = 1) in vec3 normal;
-layout(location = 2) in vec3 rest;  // mm, the position at rest
+layout(location = 2) in vec3 rest;  // mm, where the roughness lies
+layout(location = 3) in vec3 shape;  // mm, the position at rest
 layout(location = 0) out vec4 scattered_coverage;  // W/(mm^2 sr), 1
 layout(location = 1) out vec4 specular;            // W/(mm^2 sr), 1
 layout(location = 2) out vec4 unscattered;         // none, 1
@@ -14,6 +15,7 @@ layout(location = 2) out vec4 unscattered;         // none, 1
 #include "path/path_field.glsl"
 #include "path/path_tools.glsl"
 #include "display/specular.glsl"
+#include "display/shading_normal.glsl"
 
 // Where a ray from the eye to `end` last leaves a tool: the point, and there the direction out of what is left; false
 // where it meets none. From afar it is followed from before the body on.
@@ -40,16 +42,21 @@ void main() {
   PathField field = push.field.at[0];
   if (field.tools.count > 0u && cut_away(field.tools, position)) discard;
   if (PLACED_ROUGHNESS) place_roughness(rest, dFdx(rest), dFdy(rest));
-  vec3 at = position, n = normalize(normal);
+  vec3 at = position, n = normalize(normal), to_right = dFdx(position), to_below = dFdy(position);
+  if (NORMAL_MAP) n = mapped_normal(n, shape, dFdx(shape), dFdy(shape), to_right, to_below);
+  vec3 across = cross(to_right, to_below);
   if (field.tools.count > 0u && !gl_FrontFacing) {
     vec3 point, outward;
     if (last_cut(field.tools, position, point, outward)) {
       at = point;
-      n = outward;
+      n = mesh_normal = outward;
+      across = vec3(0);
     }
   }
   vec3 v = towards_eye(SCENE.eye, at);
+  if (dot(n, v) < 0.0 && !gl_FrontFacing) mesh_normal = -mesh_normal;
   if (dot(n, v) < 0.0) n = gl_FrontFacing ? normalize(n - 1.001 * dot(n, v) * v) : -n;
+  n = seen_normal(n, across, v);
   evenly = fresnel_reflectance(clamp(dot(n, v), 0.0, 1.0), eta);
   float share = (1.0 - evenly) / SCENE.radiance_norm;
   scattered_coverage = vec4(share * path_exitance(field, at), 1.0);

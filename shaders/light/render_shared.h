@@ -16,6 +16,7 @@ namespace quadgraph::gpu {
 // Bits of the variant of a pipeline, which is a specialization constant (shaped.glsl).
 #define VARIANT_SHAPED 1
 #define VARIANT_PLACED_ROUGHNESS 2
+#define VARIANT_NORMAL_MAP 4
 
 // Texels along a side of a shadow map: of a single view, and of each of a point light's six; of a patch.
 const uint SHADOW_SIZE = 2048u;
@@ -50,6 +51,17 @@ QG_ARRAY(LightShapes, LightShape);
 
 #endif
 
+// A picture of how the surface leans (engine/render/display/normal_map.h): slopes along the picture's right and up, and
+// the mean of their squared length [Olano 2010].
+struct NormalMapRef {
+  QG_REF(Vec3s) rest;    // per display vertex, mm; or by coordinates of the mesh: u, v downwards, 1 where it lies
+  QG_REF(Vec3s) texels;  // of the image
+  ImageLevels image;
+  ImageBox box;
+  float strength;
+  uint by_mesh;  // 1: by coordinates of the mesh
+};
+
 // All that surface.vert and surface.frag read.
 struct SurfaceScene {
   mat4 clip_from_offset;  // of what is `origin` (mm) less than a place: engine/render/display/camera.h
@@ -59,6 +71,7 @@ struct SurfaceScene {
   float eta;            // surface_path.frag alone, as is the next: of the one material of what has no levels
   float radiance_norm;  // as of Refraction
   float roughness;      // GGX alpha
+  vec2 mirrored;        // GGX alpha by which ENVIRONMENT_REFLECTED and ENVIRONMENT_REFLECTED_PLACED are blurred
   uint light_count;
   QG_REF(Vec3s) vertices;     // display mesh, mm
   QG_REF(Vec3s) normals;      // unit
@@ -78,6 +91,7 @@ struct SurfaceScene {
   QG_REF(GatherScales) scale;
   QG_REF(SurfaceShares) share;  // per surface vertex of level 0; null: errors are not told by part
   SolidRef solid;
+  NormalMapRef normal_map;  // with VARIANT_NORMAL_MAP
 };
 
 #ifndef __cplusplus

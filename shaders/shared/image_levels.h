@@ -8,6 +8,7 @@
 namespace quadgraph::gpu {
 using glm::clamp;
 using glm::dot;
+using glm::floor;
 using glm::max;
 using glm::min;
 using glm::mix;
@@ -31,8 +32,15 @@ struct ImageTap {
   vec2 share;
 };
 
-// Around `place`, 0 to 1 from the upper left corner, in the level whose texels are about `texels` of the finest a side.
-QG_INLINE ImageTap image_tap(ImageLevels image, vec2 place, float texels) {
+// A whole number from -1 to `count` as one of those that are repeated.
+QG_INLINE uint wrapped(float index, uint count) {
+  float size = float(count);
+  return uint(index < 0.0f ? index + size : index < size ? index : index - size);
+}
+
+// Around `place`, 0 to 1 from the upper left corner, in the level whose texels are about `texels` of the finest a side;
+// beyond them the picture ends, or is repeated.
+QG_INLINE ImageTap tap_of(ImageLevels image, vec2 place, float texels, bool repeated) {
   uvec2 size = uvec2(image.columns, image.rows);
   uint first = image.first;
   float wanted = 1.41421356f;  // to the nearest power of two
@@ -42,9 +50,12 @@ QG_INLINE ImageTap image_tap(ImageLevels image, vec2 place, float texels) {
     wanted *= 2.0f;
   }
   vec2 last = vec2(size) - vec2(1.0f);
-  vec2 texel = clamp(place * vec2(size) - vec2(0.5f), vec2(0.0f), last);
-  uvec2 low = uvec2(texel);
+  vec2 texel = (repeated ? place - floor(place) : place) * vec2(size) - vec2(0.5f);
+  if (!repeated) texel = clamp(texel, vec2(0.0f), last);
+  vec2 whole = floor(texel);
+  uvec2 low = uvec2(wrapped(whole.x, size.x), wrapped(whole.y, size.y));
   uvec2 high = min(low + uvec2(1u), size - uvec2(1u));
+  if (repeated) high = uvec2(wrapped(whole.x + 1.0f, size.x), wrapped(whole.y + 1.0f, size.y));
   uint upper = first + low.y * size.x;
   uint lower = first + high.y * size.x;
   ImageTap tap;
@@ -52,8 +63,12 @@ QG_INLINE ImageTap image_tap(ImageLevels image, vec2 place, float texels) {
   tap.upper_right = upper + high.x;
   tap.lower_left = lower + low.x;
   tap.lower_right = lower + high.x;
-  tap.share = texel - vec2(low);
+  tap.share = texel - whole;
   return tap;
+}
+
+QG_INLINE ImageTap image_tap(ImageLevels image, vec2 place, float texels) {
+  return tap_of(image, place, texels, false);
 }
 
 QG_INLINE vec3 mixed(ImageTap tap, vec3 upper_left, vec3 upper_right, vec3 lower_left, vec3 lower_right) {

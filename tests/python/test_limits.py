@@ -77,6 +77,8 @@ SENTENCES = (
     f"{IMAGE['texels_a_byte']:g} for each byte of the file",
     f"at most {texture.MOST_PIXELS / 1e6:g} million pixels and {texture.MOST_BYTES >> 20} MiB, which",
     f"{texture.MOST_TOGETHER / 1e6:g} million pixels in all",
+    f"kept at most {constant('render/light/image_file.h', 'largest_kept'):g} texels a side",
+    f"`strength` is 0 to {constant('render/display/normal_map.h', 'high'):g}",
     f"coordinates at most {brief(texture.MOST_UV)}; a `.mtl` at most {mtl.MOST_BYTES >> 20} MiB",
     f"a header has at most {ply_header.HEADER_BYTES >> 10} KiB",
     f"transforms with numbers above {brief(gltf_file.LARGEST)}, are refused",

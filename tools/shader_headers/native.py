@@ -24,7 +24,7 @@ PUSH = re.compile(r"^layout\(push_constant, scalar\) uniform Block \{ (\w+) ", r
 IN_MEMORY = re.compile(r"^QG_(?:\w+_)?ARRAY\(|^layout\(push_constant")
 PROTOTYPE = re.compile(r"^\w+ \w+\([^()]*\);$")
 
-VARIANTS = 4  # of a graphics pass
+VARIANTS = 8  # of a graphics pass
 ALL_VARIANTS = (1 << VARIANTS) - 1
 
 # Lines as a whole, in this order; what matches none stays as it is.

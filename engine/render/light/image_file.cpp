@@ -21,7 +21,6 @@ namespace quadgraph {
 namespace {
 
 constexpr std::int64_t largest_side = 16384;  // texels
-constexpr std::uint32_t largest_kept = 2048;  // the same
 // Texels of any file, and for each of its bytes: others are made to fill memory.
 constexpr std::int64_t free_texels = 50000000, texels_a_byte = 16;
 
@@ -85,14 +84,52 @@ float srgb_decode(std::uint8_t value) {
   return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
 }
 
+// Of values of `channels` a texel, of which the first three count.
 template <typename Value, typename Decode>
-Image image_of(const png_image& png, const Value* values, const Decode& decode) {
+Image image_of(const png_image& png, const Value* values, std::size_t channels, const Decode& decode) {
   Image image{png.width, png.height, {}};
-  for (std::size_t i = 0; i < std::size_t{png.width} * png.height; ++i) {
-    image.texels.emplace_back(decode(values[3 * i]), decode(values[3 * i + 1]), decode(values[3 * i + 2]));
+  for (std::size_t i = 0; i < std::size_t{png.width} * png.height; ++i, values += channels) {
+    image.texels.emplace_back(decode(values[0]), decode(values[1]), decode(values[2]));
   }
   return image;
 }
+
+// A PNG whose header has been read, and found to be of a size that is allowed.
+class OpenPng {
+ public:
+  explicit OpenPng(const std::filesystem::path& path) : path_(path) {
+    png.version = PNG_IMAGE_VERSION;
+    if (png_image_begin_read_from_file(&png, path.c_str()) == 0) fail();
+    try {
+      check_image_size(path, png.width, png.height);
+    } catch (...) {
+      png_image_free(&png);
+      throw;
+    }
+  }
+  OpenPng(const OpenPng&) = delete;
+  OpenPng& operator=(const OpenPng&) = delete;
+  ~OpenPng() { png_image_free(&png); }
+
+  std::vector<std::uint8_t> values(std::uint32_t format) {
+    png.format = format;
+    std::vector<std::uint8_t> bytes(PNG_IMAGE_SIZE(png));
+    const png_color black{};
+    if (png_image_finish_read(&png, &black, bytes.data(), 0, nullptr) == 0) fail();
+    return bytes;
+  }
+
+  png_image png{};
+
+ private:
+  [[noreturn]] void fail() {
+    const std::string message = png.message;
+    png_image_free(&png);
+    throw InputError(path_.string() + ": " + message);
+  }
+
+  std::filesystem::path path_;
+};
 
 }  // namespace
 
@@ -121,29 +158,22 @@ Image read_exr(const std::filesystem::path& path) {
 }
 
 Image read_png(const std::filesystem::path& path) {
-  png_image png{};
-  png.version = PNG_IMAGE_VERSION;
-  const auto failed = [&] {
-    const std::string message = png.message;
-    png_image_free(&png);
-    return InputError(path.string() + ": " + message);
-  };
-  if (png_image_begin_read_from_file(&png, path.c_str()) == 0) throw failed();
-  try {
-    check_image_size(path, png.width, png.height);
-  } catch (...) {
-    png_image_free(&png);
-    throw;
-  }
+  OpenPng file(path);
   // libpng's own way from sRGB is a power of 2.2.
-  const bool linear = (png.format & PNG_FORMAT_FLAG_LINEAR) != 0;
-  png.format = linear ? PNG_FORMAT_LINEAR_RGB : PNG_FORMAT_RGB;
-  std::vector<std::uint8_t> bytes(PNG_IMAGE_SIZE(png));
-  const png_color black{};
-  if (png_image_finish_read(&png, &black, bytes.data(), 0, nullptr) == 0) throw failed();
-  return linear ? image_of(png, reinterpret_cast<const std::uint16_t*>(bytes.data()),
+  const bool linear = (file.png.format & PNG_FORMAT_FLAG_LINEAR) != 0;
+  const std::vector<std::uint8_t> bytes = file.values(linear ? PNG_FORMAT_LINEAR_RGB : PNG_FORMAT_RGB);
+  return linear ? image_of(file.png, reinterpret_cast<const std::uint16_t*>(bytes.data()), 3,
                            [](std::uint16_t value) { return static_cast<float>(value) / 65535; })
-                : image_of(png, bytes.data(), srgb_decode);
+                : image_of(file.png, bytes.data(), 3, srgb_decode);
+}
+
+Image read_png_values(const std::filesystem::path& path) {
+  if (extension_of(path) != ".png") throw InputError(path.string() + ": expected an image whose name ends in .png");
+  bytes_of_regular_file(path);
+  OpenPng file(path);
+  file.png.flags |= PNG_IMAGE_FLAG_16BIT_sRGB;  // whatever they mean, they are not to be changed
+  const std::vector<std::uint8_t> bytes = file.values(PNG_FORMAT_RGBA);
+  return image_of(file.png, bytes.data(), 4, [](std::uint8_t value) { return static_cast<float>(value) / 255; });
 }
 
 Image read_image(const std::filesystem::path& path) {

@@ -14,6 +14,11 @@ namespace quadgraph {
 // allowed.
 Image read_image(const std::filesystem::path& path);
 
+// The values of a .png from 0 to 1 as they stand, 8 bits of them, alpha apart. Throws as read_image.
+Image read_png_values(const std::filesystem::path& path);
+
+inline constexpr std::uint32_t largest_kept = 2048;  // texels a side, of pyramids
+
 // The pyramid of an image file, at most 2048 texels a side; from memory if the file has not changed since it was read.
 // Throws as read_image.
 std::shared_ptr<const ImagePyramid> load_pyramid(const std::filesystem::path& path);

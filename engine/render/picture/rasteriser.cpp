@@ -26,6 +26,16 @@ constexpr std::uint32_t tile_pixels = 512;  // per side; 96 MiB of samples
 constexpr std::uint32_t facets_where_clear =
     4;  // of pictures of several frames: what is seen through them differs much
 
+gpu::NormalMapRef normal_map(const PlacedNormals* placed) {
+  if (placed == nullptr) return {};
+  return {.rest = placed->rest.address(),
+          .texels = placed->texels.address(),
+          .image = placed->image,
+          .box = placed->box,
+          .strength = placed->strength,
+          .by_mesh = placed->by_mesh ? 1u : 0u};
+}
+
 gpu::SurfaceScene scene(const RasterInput& input, const Camera& camera) {
   gpu::SurfaceScene scene{.clip_from_offset = camera.clip_from_offset,
                           .origin = camera.origin,
@@ -34,6 +44,7 @@ gpu::SurfaceScene scene(const RasterInput& input, const Camera& camera) {
                           .eta = 0,
                           .radiance_norm = 0,
                           .roughness = input.roughness,
+                          .mirrored = input.mirrored,
                           .light_count = input.shadows.light_count(),
                           .vertices = input.mesh.vertices.address(),
                           .normals = input.mesh.normals.address(),
@@ -52,7 +63,8 @@ gpu::SurfaceScene scene(const RasterInput& input, const Camera& camera) {
                           .points = 0,
                           .scale = 0,
                           .share = 0,
-                          .solid = {}};
+                          .solid = {},
+                          .normal_map = normal_map(input.placed_normals)};
   if (input.gather != nullptr) {
     scene.triangle_face = input.gather->triangle_face.address();
     scene.points = input.gather->field.points().address();
@@ -82,6 +94,8 @@ gpu::SurfaceScene scene(const PathInput& input, const Camera& camera) {
   scene.reach = camera.reach;
   scene.eta = input.eta;
   scene.roughness = input.roughness;
+  scene.mirrored = input.mirrored;
+  scene.normal_map = normal_map(input.placed_normals);
   scene.radiance_norm = static_cast<float>(radiance_norm(input.eta));
   scene.light_count = input.shadows.light_count();
   scene.vertices = input.mesh.vertices.address();
@@ -95,7 +109,8 @@ gpu::SurfaceScene scene(const PathInput& input, const Camera& camera) {
 template <typename Input>
 std::uint32_t variant_of(const Input& input) {
   return (input.shadows.shaped() ? VARIANT_SHAPED : 0u) |
-         (input.placed_roughness != nullptr ? VARIANT_PLACED_ROUGHNESS : 0u);
+         (input.placed_roughness != nullptr ? VARIANT_PLACED_ROUGHNESS : 0u) |
+         (input.placed_normals != nullptr ? VARIANT_NORMAL_MAP : 0u);
 }
 
 device::GraphicsOptions pass_options(const device::Shader& vertex, const device::Shader& fragment,

@@ -36,6 +36,16 @@ struct PlacedRoughness {
   float roughness;
 };
 
+// A NormalMap on the device.
+struct PlacedNormals {
+  const device::Buffer& texels;
+  const device::Buffer& rest;  // vec3 per display vertex, mm, or DisplayMesh::texture_places
+  gpu::ImageBox box;
+  gpu::ImageLevels image;
+  float strength;
+  bool by_mesh;
+};
+
 struct RasterInput {
   const DisplayBuffers& mesh;
   const LevelBuffers& finest;
@@ -44,6 +54,8 @@ struct RasterInput {
   const ShadowMaps& shadows;
   float roughness = 0.3f;                             // alpha of GGX
   const PlacedRoughness* placed_roughness = nullptr;  // null: the same everywhere
+  const PlacedNormals* placed_normals = nullptr;      // null: those of the mesh
+  glm::vec2 mirrored{};  // alphas of the two pictures of environments, unless roughness is the same everywhere
   const GatherView* gather = nullptr;                 // null: radiance as of a diffuser
   std::optional<float> transmission_roughness{};      // the same of light that comes through; empty: the surface's
   std::uint32_t frame = 0;                            // of those that make the picture
@@ -57,7 +69,9 @@ struct PathInput {
   const ShadowMaps& shadows;
   float eta = 1;
   float roughness = 0.3f;                             // alpha of GGX
-  const PlacedRoughness* placed_roughness = nullptr;  // as in RasterInput
+  const PlacedRoughness* placed_roughness = nullptr;  // as in RasterInput, as are the next
+  const PlacedNormals* placed_normals = nullptr;
+  glm::vec2 mirrored{};
 };
 
 // A view of the inside on the device.
@@ -113,8 +127,8 @@ class Rasteriser {
   const device::ComputePass& resolve(const RasterInput& input);
 
   device::Device& device_;
-  std::array<std::optional<device::GraphicsPass>, 8> surfaces_;  // gathered or not, by variant; at first use
-  std::array<std::optional<device::GraphicsPass>, 4> paths_;     // from cells, by variant; the same
+  std::array<std::optional<device::GraphicsPass>, 16> surfaces_;  // gathered or not, by variant; at first use
+  std::array<std::optional<device::GraphicsPass>, 8> paths_;      // from cells, by variant; the same
   device::ComputePass resolve_;
   std::array<std::optional<device::ComputePass>, 2> gathers_;  // without shaped lights and with; at first use
   std::optional<device::GraphicsPass> false_colour_;           // made at first use

@@ -108,9 +108,9 @@ class PictureOptions(TypedDict, total=False):
     material's; transmission_roughness: the same for light that comes out of the body, left out, as rough; radiance:
     how it leaves the surface; show: "picture", or what is inside (docs/window.md, "Views of the
     inside"); ground: its shadow where the body stands, and its light; surroundings: what environment lights show,
-    behind it; roughness_map: as in scene files; exposure: "auto" or stops; tone: the curve from radiance to a screen;
-    white_balance: kelvin of the light that is shown white, 6504 for none changed; background: "studio", "black",
-    "white", "transparent" (PNG only), a grey, three numbers, or {"top": ..., "bottom": ...}, linear.
+    behind it; roughness_map, normal_map: as in scene files; exposure: "auto" or stops; tone: the curve from radiance to
+    a screen; white_balance: kelvin of the light that is shown white, 6504 for none changed; background: "studio",
+    "black", "white", "transparent" (PNG only), a grey, three numbers, or {"top": ..., "bottom": ...}, linear.
     """
 
     width: int
@@ -126,6 +126,7 @@ class PictureOptions(TypedDict, total=False):
     ground: bool
     surroundings: bool
     roughness_map: Mapping[str, Any]
+    normal_map: Mapping[str, Any]
     exposure: float | Literal["auto"]
     tone: Tone
     white_balance: float

@@ -13,9 +13,10 @@ from typing import Any
 import numpy as np
 
 from quadgraph.baking import pipeline
-from quadgraph.baking.pipeline import BakeOptions, BakeReport, Level, Prepared
+from quadgraph.baking.pipeline import BakeOptions, Level, Prepared
 from quadgraph.baking.placing import BodyPlacement, check_apart
 from quadgraph.baking.placing import joined as joined_surface
+from quadgraph.baking.report import BakeReport
 from quadgraph.base import outputs
 from quadgraph.base.errors import InputError, ToolError
 from quadgraph.base.progress import ProgressCallback
@@ -36,7 +37,7 @@ class BodyMesh:
 
     name: 1 to 64 bytes without control characters, "=", "/" and "~"; unit, height_mm, longest_mm, up and wrap: as of
     BakeOptions; part: of the file, by its name (`quadgraph.mesh.named_parts`), at the size of the whole file;
-    surface_vertices: of this body, None for what BakeOptions say of all.
+    surface_vertices: of this body, None for what BakeOptions say of all; normals: as of BakeOptions.
     """
 
     name: str
@@ -49,6 +50,7 @@ class BodyMesh:
     wrap: float | str | None = None
     part: str | None = None
     surface_vertices: int | None = None
+    normals: str = "file"
 
 
 def bake_bodies(
@@ -56,9 +58,9 @@ def bake_bodies(
 ) -> BakeReport:
     """Bake meshes into one file of several bodies, and report.
 
-    options: of each body alike, `surface_vertices` of each by itself; size, `up` and `wrap` are those of the bodies.
-    Raises InputError for unusable input or options, and for bodies that cut, touch or lie within each other, which it
-    names; ToolError as `pipeline.bake`. `output` is written last and at once.
+    options: of each body alike, `surface_vertices` of each by itself; size, `up`, `wrap` and `normals` are those of the
+    bodies. Raises InputError for unusable input or options, and for bodies that cut, touch or lie within each other,
+    which it names; ToolError as `pipeline.bake`. `output` is written last and at once.
     """
     tell = progress or (lambda text: None)
     check(bodies, options)
@@ -115,7 +117,8 @@ def meshes_as_they_lie(meshes: Sequence[Path], options: BakeOptions) -> list[Bod
     used = np.concatenate([each.surface.vertices[np.unique(each.surface.triangles)] for each in read])
     scale, _ = mesh_size.scale_of(meshes[0], used, options.unit, options.height_mm, options.longest_mm)
     placement = BodyPlacement(scale=scale)
-    return [BodyMesh(mesh.stem, mesh, placement, "mm", up=options.up, wrap=options.wrap) for mesh in meshes]
+    own = {name: getattr(options, name) for name in ("up", "wrap", "normals")}
+    return [BodyMesh(mesh.stem, mesh, placement, "mm", **own) for mesh in meshes]
 
 
 def parts_as_bodies(mesh: Path, options: BakeOptions) -> list[BodyMesh]:
@@ -124,7 +127,7 @@ def parts_as_bodies(mesh: Path, options: BakeOptions) -> list[BodyMesh]:
     found = sorted(set(named_parts.names(mesh).tolist()))
     if len(found) < 2:
         raise InputError(f"{mesh}: parts: one found, {found[0]!r}, of {read.triangles:,} triangles; leave them out")
-    sizes = {name: getattr(options, name) for name in ("unit", "height_mm", "longest_mm", "up", "wrap")}
+    sizes = {name: getattr(options, name) for name in ("unit", "height_mm", "longest_mm", "up", "wrap", "normals")}
     return [BodyMesh(name, mesh, part=name, **sizes) for name in found]
 
 
@@ -154,11 +157,16 @@ def _prepared(body: BodyMesh, options: BakeOptions, report: BakeReport, tell: Pr
         longest_mm=body.longest_mm,
         up=body.up,
         wrap=body.wrap,
+        normals=body.normals,
         front=0.0,
     )
     with _reporting(body, report) as of_body:
         made = pipeline.prepare(body.mesh, own, of_body, _telling(body, tell), body.part)
-    return replace(made, surface=body.placement.of(made.surface))
+    placed = body.placement
+    if made.normals.texture is not None:
+        report.notes.append(f"{body.name}: a file of several bodies keeps no normal texture; its own is left out")
+        made = replace(made, normals=replace(made.normals, texture=None))
+    return replace(made, surface=placed.of(made.surface), normals=made.normals.turned(placed.turned))
 
 
 def _write(
@@ -171,7 +179,7 @@ def _write(
     with report.timed("transfers"):
         content = joined.join(
             [
-                sections.whole_file([level.graph for level in levels], each.surface)
+                sections.whole_file([level.graph for level in levels], each.surface, normals=each.normals)
                 for each, levels in zip(prepared, made, strict=True)
             ]
         )
@@ -234,6 +242,7 @@ def _metadata(body: BodyMesh, prepared: Prepared, made: Sequence[Level]) -> dict
         "rotation": list(body.placement.rotation),
         "scale": body.placement.scale,
         "surface_vertices": body.surface_vertices,
+        "normals": prepared.normals.metadata(),
         "box_mm": [low.tolist(), high.tolist()],
         "tets": len(made[0].graph.tets),
         "volume_mm3": made[0].graph.volume,

@@ -12,9 +12,11 @@ from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
+from urllib.parse import unquote
 
 from quadgraph.baking.bodies import BodyMesh, bake_bodies
-from quadgraph.baking.pipeline import BakeOptions, BakeReport, bake
+from quadgraph.baking.pipeline import BakeOptions, bake
+from quadgraph.baking.report import BakeReport
 from quadgraph.base import regular_file
 from quadgraph.base.cache_folder import cache_folder
 from quadgraph.base.progress import ProgressCallback
@@ -191,8 +193,9 @@ def mesh_files(mesh: Path) -> list[Path]:
     """A mesh's own file, and those that a .gltf names."""
     if mesh.suffix.lower() != ".gltf":
         return [mesh]
-    buffers = gltf_file.read(mesh, lambda file: file.document.get("buffers", []))
-    names = [str(each["uri"]) for each in buffers if "uri" in each]
+    document = gltf_file.read(mesh, lambda file: file.document)
+    names = [str(each["uri"]) for each in document.get("buffers", []) if "uri" in each]
+    names += [unquote(str(each["uri"])) for each in document.get("images", []) if "uri" in each]
     return [mesh, *(mesh.parent / name for name in names if not name.startswith("data:"))]
 
 

@@ -19,6 +19,7 @@ import numpy as np
 
 from quadgraph.baking import inside
 from quadgraph.baking.inside import LevelSizes
+from quadgraph.baking.report import BakeReport
 from quadgraph.base import child_process, outputs
 from quadgraph.base.errors import InputError, QuadGraphError, ToolError
 from quadgraph.base.progress import ProgressCallback
@@ -26,6 +27,8 @@ from quadgraph.base.version import __version__
 from quadgraph.core import load_core
 from quadgraph.file import qgraph_file, sections
 from quadgraph.mesh import front, lod, mesh_io, solid, subdivide, wrap
+from quadgraph.mesh.looks import file_normals
+from quadgraph.mesh.looks.file_normals import COMPUTED, FoundNormals
 from quadgraph.mesh.surface import MesherInfo, Repair, SourceMesh, Surface
 from quadgraph.tets import exchange, graph, ordering, relax
 from quadgraph.tets.polygrid import build as polygrid
@@ -41,7 +44,7 @@ MOST_STEPS = 10000  # that spread the inner nodes
 WORKERS = 2  # levels filled with tets at the same time
 _PACKAGES = ("numpy", "scipy", "pymeshlab", "trimesh")
 _OPTIONS = ("up", "wrap", "levels", "surface_vertices", "refine", "interior", "for_materials", "relax_nodes", "order",
-            "visibility_rays", "cubes", "cells")  # fmt: skip
+            "visibility_rays", "cubes", "cells", "normals")  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -58,8 +61,9 @@ class BakeOptions:
     "auto" by the shape, "surface" as the surface makes them, or an edge length in mm (of coarser levels twice that,
     four times, ...), None for "auto" with tetgen and "surface" with cgal; for_materials: materials that they are sized
     for instead, texts or files of volumes; visibility_rays: from each face of one level, to find what sees what, 0 for
-    none; limits hold for each run of the mesher; front: azimuth in degrees from where the body is shown when nobody
-    says so, None for `quadgraph.mesh.front.azimuth`.
+    none; normals: of the displayed surface, "file" for those of the mesh file where it gives some that can be true,
+    "angle" for smooth ones up to edges of 40 degrees, as all others get; limits hold for each run of the mesher; front:
+    azimuth in degrees from where the body is shown when nobody says so, None for `quadgraph.mesh.front.azimuth`.
     """
 
     unit: str | None = None
@@ -79,45 +83,10 @@ class BakeOptions:
     interior: str | float | None = None
     for_materials: tuple[str, ...] = ()
     visibility_rays: int = exchange.DEFAULT_RAYS
+    normals: str = "file"
     time_limit_s: float = DEFAULT_TIME_LIMIT_S
     memory_limit_bytes: int = DEFAULT_MEMORY_LIMIT_BYTES
     front: float | None = None
-
-
-@dataclass
-class BakeReport:
-    """What a bake did. Times in s; of levels, `seconds` per step; memory in bytes, children apart.
-
-    exchange: what faces see of each other, as `exchange.summary` tells; None if left out. budget: what was measured and
-    chosen for an error that was asked for (`quadgraph.baking.budget.plan`). interior: what the
-    inner tets are sized by (`quadgraph.baking.inside.metadata`), None of polygrids. polygrid: how good it is
-    (`quadgraph.tets.polygrid.grid_report`), None of other meshers.
-    """
-
-    output: str
-    byte_size: int = 0
-    source: dict[str, Any] = field(default_factory=dict)
-    unit_mm: float = 0.0
-    repairs: list[dict[str, Any]] = field(default_factory=list)
-    levels: list[dict[str, Any]] = field(default_factory=list)
-    exchange: dict[str, Any] | None = None
-    budget: dict[str, Any] | None = None
-    interior: dict[str, Any] | None = None
-    polygrid: dict[str, Any] | None = None
-    notes: list[str] = field(default_factory=list)
-    seconds: dict[str, float] = field(default_factory=dict)
-    peak_memory: dict[str, int] = field(default_factory=dict)
-
-    def as_dict(self) -> dict[str, Any]:
-        """Everything, ready for JSON."""
-        return asdict(self)
-
-    @contextmanager
-    def timed(self, stage: str) -> Iterator[None]:
-        """Book the time of the block under `stage`."""
-        start = time.perf_counter()
-        yield
-        self.seconds[stage] = self.seconds.get(stage, 0.0) + time.perf_counter() - start
 
 
 @dataclass(frozen=True)
@@ -136,12 +105,13 @@ class Level:
 
 @dataclass(frozen=True)
 class Prepared:
-    """A mesh file's surface, mm, fit for the mesher, what was repaired for that, and its front, degrees."""
+    """A mesh file's surface, mm, fit for the mesher, what was repaired for that, its front, degrees, and normals."""
 
     source: SourceMesh
     surface: Surface
     repairs: list[Repair]
     front: float
+    normals: FoundNormals = COMPUTED
 
 
 def bake(
@@ -192,7 +162,19 @@ def prepare(
         tell(f"repaired: {entry.what}: {entry.count:,}")
     with report.timed("front"):
         seen_from = front.azimuth(surface) if options.front is None else options.front
-    return Prepared(source, surface, repairs, seen_from)
+    with report.timed("normals"):
+        normals = _normals(mesh, source, surface, options)
+    report.notes += [normals.note] if normals.note else []
+    return Prepared(source, surface, repairs, seen_from, normals)
+
+
+def _normals(mesh: Path, source: SourceMesh, surface: Surface, options: BakeOptions) -> FoundNormals:
+    """Those that the file gives, if they are wanted and its triangles are shown."""
+    if options.normals == "angle":
+        return COMPUTED
+    if options.wrap is not None:
+        return FoundNormals("angle", note="the normals of a wrapped surface are computed")
+    return file_normals.find(mesh, surface, source.frame.placed)
 
 
 def write(
@@ -208,8 +190,10 @@ def write(
     if seen is not None:
         report.exchange = exchange.summary(seen, graphs[seen.level].boundary)
     with report.timed("transfers"):
-        content = sections.whole_file(graphs, prepared.surface, seen)
-    finish(prepared, levels, content, options, report, {} if budget is None else {"budget": budget})
+        content = sections.whole_file(graphs, prepared.surface, seen, prepared.normals)
+    report.normals = prepared.normals.metadata()
+    more = {"normals": report.normals} | ({} if budget is None else {"budget": budget})
+    finish(prepared, levels, content, options, report, more)
 
 
 def finish(
@@ -247,6 +231,7 @@ def check_options(output: Path, options: BakeOptions) -> None:
     _check_polygrid_options(options)
     subdivide.check(options.refine)
     wrap.check(options.wrap)
+    file_normals.check(options.normals)
     outputs.check_folder(output)
     outputs.check_kind(output)
     load_core()  # holds what is written to the rules of the file

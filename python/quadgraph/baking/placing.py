@@ -43,8 +43,13 @@ class BodyPlacement:
         """The surface, mm, where it is to lie."""
         if self == BodyPlacement():
             return surface
-        turned = Rotation.from_euler("xyz", self.rotation, degrees=True).apply(surface.vertices)
+        turned = self.turned(surface.vertices)
         return Surface(self.scale * turned + np.array(self.position), surface.triangles)
+
+    def turned(self, vectors: np.ndarray) -> np.ndarray:
+        """Directions (..., 3) of the mesh where it is to lie."""
+        turn = Rotation.from_euler("xyz", self.rotation, degrees=True)
+        return turn.apply(vectors.reshape(-1, 3)).reshape(vectors.shape)
 
 
 def joined(surfaces: Sequence[Surface]) -> Surface:

@@ -15,10 +15,24 @@ from quadgraph.baking.placing import BodyPlacement, Triple
 from quadgraph.base.arguments import length_mm
 from quadgraph.base.errors import InputError
 from quadgraph.base.units import UNITS_MM, UPS
+from quadgraph.mesh.looks.file_normals import RULES
 from quadgraph.mesh.mesh_names import SUFFIXES, is_mesh
 
 _LIES = ("position", "rotation", "scale")
-_MEMBERS = ("name", "mesh", "part", "unit", "height", "longest", "up", "wrap", "surface_vertices", *_LIES, "material")
+_MEMBERS = (
+    "name",
+    "mesh",
+    "part",
+    "unit",
+    "height",
+    "longest",
+    "up",
+    "wrap",
+    "surface_vertices",
+    "normals",
+    *_LIES,
+    "material",
+)
 _SIZES = {"unit": "unit", "height": "height_mm", "longest": "longest_mm"}  # as BodyMesh has them
 
 
@@ -96,8 +110,9 @@ def _body(entry: Any, where: str, folder: Path) -> BodyMesh:
     if vertices is not None and (isinstance(vertices, bool) or not isinstance(vertices, int)):
         _refuse(f"{where}/surface_vertices", vertices, "a whole number")
     up = _one_of(entry.get("up", "y"), f"{where}/up", UPS)
-    wrap = _wrap(entry, where)
-    return BodyMesh(name, mesh, placement, **given, up=up, wrap=wrap, part=part, surface_vertices=vertices)
+    normals = _one_of(entry.get("normals", "file"), f"{where}/normals", RULES)
+    given |= {"up": up, "wrap": _wrap(entry, where), "part": part, "normals": normals}
+    return BodyMesh(name, mesh, placement, **given, surface_vertices=vertices)
 
 
 def _mesh(entry: dict[str, Any], where: str, folder: Path) -> Path:

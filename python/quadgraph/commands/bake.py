@@ -20,7 +20,7 @@ from quadgraph.commands import bake_bodies, bake_many, own_mesh
 from quadgraph.work.schedulers import add_scheduler_argument, check_several
 
 if TYPE_CHECKING:
-    from quadgraph.baking.pipeline import BakeReport
+    from quadgraph.baking.report import BakeReport
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -145,6 +145,14 @@ def _add_mesh_options(parser: argparse.ArgumentParser) -> None:
         "leaves one enters another (default: 256; 0: none)",
     )
     parser.add_argument(
+        "--normals",
+        choices=("file", "angle"),
+        default="file",
+        help="of the displayed surface: those of the mesh file (vn of OBJ, nx ny nz of PLY, NORMAL of glTF) where it "
+        "gives some on the right side of their triangles, with the normal texture of glTF, and smooth ones up to edges "
+        "of 40 degrees elsewhere; angle: the latter everywhere (default: %(default)s)",
+    )
+    parser.add_argument(
         "--front",
         type=float,
         metavar="DEG",
@@ -245,12 +253,14 @@ def _write_surface(args: argparse.Namespace) -> int:
 
     left_alone = {
         *("mesh", "output", "unit", "height", "longest", "up", "front"),
-        *("surface_only", "mesher", "order", "device", "scheduler", "no_config"),
+        *("surface_only", "normals", "mesher", "order", "device", "scheduler", "no_config"),
     }
     for name in sorted(args.given - left_alone):
         if getattr(args, name):
             raise InputError(f"--{name.replace('_', '-')}: found with --surface-only, which makes no levels")
-    source = bare.write(args.mesh, args.output, **own_mesh.sizes(args), front_degrees=args.front, up=args.up)
+    source = bare.write(
+        args.mesh, args.output, **own_mesh.sizes(args), front_degrees=args.front, up=args.up, normals=args.normals
+    )
     console = Console(highlight=False)
     if source.size_note:
         console.print(source.size_note, markup=False, soft_wrap=True)
@@ -298,6 +308,7 @@ def _options(args: argparse.Namespace):
         "relax_nodes": args.relax_nodes,
         "order": args.order,
         "surface_vertices": args.surface_vertices,
+        "normals": args.normals,
         "refine": args.refine,
         "interior": args.interior,
         "for_materials": tuple(args.for_material) if args.for_material else None,
@@ -316,6 +327,10 @@ def _print_report(report: BakeReport) -> None:
         console.print(f"repaired: {entry['what']}: {entry['count']:,}", markup=False)
     for note in report.notes:
         console.print(note, markup=False, soft_wrap=True)
+    if report.normals:
+        from quadgraph.mesh.looks import file_normals
+
+        console.print(file_normals.sentence(report.normals), markup=False, soft_wrap=True)
     if report.polygrid:
         from quadgraph.tets.polygrid.grid_report import sentences
 

@@ -14,7 +14,8 @@ from quadgraph.work.schedulers import check_several
 
 if TYPE_CHECKING:
     from quadgraph.baking.bodies import BodyMesh
-    from quadgraph.baking.pipeline import BakeOptions, BakeReport
+    from quadgraph.baking.pipeline import BakeOptions
+    from quadgraph.baking.report import BakeReport
 
 _OF_ONE = ("surface_only", "error", "material", "light")
 
@@ -52,7 +53,7 @@ def _of_meshes(args: argparse.Namespace, options: BakeOptions) -> list[BodyMesh]
 
 
 def _of_scene(args: argparse.Namespace) -> list[BodyMesh]:
-    said = [name for name in (*own_mesh.NAMES, "up") if name in args.given]
+    said = [name for name in (*own_mesh.NAMES, "up", "normals") if name in args.given]
     if said:
         raise InputError(f"--{said[0]}: found with a scene, whose bodies say it themselves (docs/bodies.md)")
     return scene_file.meshes_of(args.mesh[0])

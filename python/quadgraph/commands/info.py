@@ -80,6 +80,7 @@ def printable(text: str) -> str:
 
 def _print_facts(name: str, facts: dict[str, Any]) -> None:
     from quadgraph.baking import inside
+    from quadgraph.mesh.looks import file_normals
 
     console, metadata = Console(highlight=False), facts["metadata"]
     source, mesher = metadata["source"], metadata["mesher"]
@@ -98,6 +99,7 @@ def _print_facts(name: str, facts: dict[str, Any]) -> None:
         f"options: {options}",
         *([inside.sentence(metadata["interior"])] if "interior" in metadata else []),
         f"repairs: {repairs}",
+        *([file_normals.sentence(metadata["normals"])] if "normals" in metadata else []),
         f"front: azimuth {metadata.get('front', 0):g} degrees",
         f"tools: {tools}",
     ]

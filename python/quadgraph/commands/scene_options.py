@@ -215,7 +215,7 @@ def seen_from(args: argparse.Namespace) -> dict[str, str]:
 
 def inputs(args: argparse.Namespace) -> list[Path | str | None]:
     """The files, and the texts that may name some, that a run reads."""
-    texts = [getattr(args, name, None) for name in ("file", "material")]
+    texts = [getattr(args, name, None) for name in ("file", "material", "normal_map")]
     others = by_body(getattr(args, "material_of", None) or []).values()
     named = [load_core().volume_name(text) for text in (texts[1], *others) if text]
     return [*texts, *others, *(each[0] for each in named if each), *(args.light or [])]

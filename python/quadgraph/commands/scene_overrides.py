@@ -131,6 +131,11 @@ def _background(text: str) -> dict[str, Any]:
     return {"/picture/background": text}
 
 
+def _normal_map(text: str) -> dict[str, Any]:
+    """Over all of the body, whatever the scene placed there."""
+    return {"/picture/normal_map": {"image": str(Path(text).absolute())}}
+
+
 # Options that a scene file says in another form: from what was typed to JSON values by their pointers.
 OWN_FORMS: dict[str, Callable[[Any], dict[str, Any]]] = {
     "material": _material,
@@ -142,6 +147,7 @@ OWN_FORMS: dict[str, Callable[[Any], dict[str, Any]]] = {
     "look-at": _place("look_at"),
     "size": _size,
     "background": _background,
+    "normal-map": _normal_map,
 }
 
 

@@ -10,6 +10,8 @@ import numpy as np
 from quadgraph.file.qgraph_file import QGraphFile
 from quadgraph.mesh import display_map
 from quadgraph.mesh.creases import parted
+from quadgraph.mesh.looks.file_normals import COMPUTED, FoundNormals
+from quadgraph.mesh.looks.normal_texture import NormalTexture
 from quadgraph.mesh.surface import Surface
 from quadgraph.tets import transfer
 from quadgraph.tets.exchange import Seen
@@ -53,28 +55,40 @@ def transfers(number: int, fine: Graph, coarse: Graph) -> dict[str, np.ndarray]:
     return sections
 
 
-def display(surface: Surface, finest: Graph) -> dict[str, np.ndarray]:
-    """Sections of the display mesh, tied to the outside faces of the finest level."""
+def display(surface: Surface, finest: Graph, normals: FoundNormals = COMPUTED) -> dict[str, np.ndarray]:
+    """Sections of the display mesh, tied to the outside faces of the finest level; normals: at its corners."""
     rounded = surface.rounded()
     face, coordinates = display_map.nearest_faces(rounded.vertices, finest.boundary)
-    vertex, triangles, normals = parted(surface)
-    face, coordinates = display_map.faces_of_sides(face[vertex], coordinates[vertex], normals, finest.boundary)
+    vertex, triangles, found = parted(surface, normals.at_corners, normals.parting)
+    face, coordinates = display_map.faces_of_sides(face[vertex], coordinates[vertex], found, finest.boundary)
     return {
         "display/vertices": _f32(rounded.vertices[vertex]),
-        "display/normals": _f32(normals),
+        "display/normals": _f32(found),
         "display/triangles": _u32(triangles),
         "display/face": _u32(face),
         "display/barycentric": _f32(coordinates),
+    } | _texture(normals.texture, triangles, len(vertex))
+
+
+def _texture(texture: NormalTexture | None, triangles: np.ndarray, count: int) -> dict[str, np.ndarray]:
+    """Sections of a normal texture at the corners of triangles (m, 3) of `count` display vertices."""
+    if texture is None:
+        return {}
+    places = np.zeros((count, 3))
+    places[triangles] = texture.places
+    return {
+        "display/texture_places": _f32(places),
+        "display/normal_texture": np.ascontiguousarray(texture.pixels.reshape(len(texture.pixels), -1), "u1"),
     }
 
 
-def display_alone(surface: Surface, normals: np.ndarray) -> dict[str, np.ndarray]:
-    """Sections of a file without levels; normals (n, 3), unit."""
+def display_alone(surface: Surface, normals: np.ndarray, texture: NormalTexture | None = None) -> dict[str, np.ndarray]:
+    """Sections of a file without levels; normals (n, 3), unit; texture: at the corners of its triangles."""
     return {
         "display/vertices": _f32(surface.vertices),
         "display/normals": _f32(normals),
         "display/triangles": _u32(surface.triangles),
-    }
+    } | _texture(texture, surface.triangles, len(surface.vertices))
 
 
 def exchange(seen: Seen) -> dict[str, np.ndarray]:
@@ -83,10 +97,13 @@ def exchange(seen: Seen) -> dict[str, np.ndarray]:
     return {f"{prefix}_rays": _u32(np.array([seen.rays])), prefix: _u32(seen.table)}
 
 
-def whole_file(graphs: Sequence[Graph], surface: Surface, seen: Seen | None = None) -> dict[str, np.ndarray]:
+def whole_file(
+    graphs: Sequence[Graph], surface: Surface, seen: Seen | None = None, normals: FoundNormals = COMPUTED
+) -> dict[str, np.ndarray]:
     """All sections but the metadata, in file order.
 
-    graphs: finest first; surface: the display mesh; seen: what the faces of one of them see, None to leave it out.
+    graphs: finest first; surface: the display mesh; seen: what the faces of one of them see, None to leave it out;
+    normals: at the corners of its triangles.
     """
     sections: dict[str, np.ndarray] = {}
     for number, graph in enumerate(graphs):
@@ -95,7 +112,7 @@ def whole_file(graphs: Sequence[Graph], surface: Surface, seen: Seen | None = No
             sections |= exchange(seen)
         if number + 1 < len(graphs):
             sections |= transfers(number, graph, graphs[number + 1])
-    return sections | display(surface, graphs[0])
+    return sections | display(surface, graphs[0], normals)
 
 
 def level_metadata(graph: Graph) -> dict[str, Any]:

@@ -7,6 +7,8 @@ import numpy as np
 from quadgraph.mesh.surface import Surface
 
 CREASE_DEGREES = 40.0  # between the normals of two triangles
+_SAME_NORMAL = 1e-3  # normals of a file that are nearer than this, in each coordinate, are one
+_SAME_PLACE = 1e-6  # places in a texture, the same
 
 
 def creases(surface: Surface) -> np.ndarray:
@@ -32,24 +34,45 @@ def corner_normals(surface: Surface, sharp: np.ndarray) -> np.ndarray:
     return unit(sums)[fan]
 
 
-def parted(surface: Surface) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """A closed surface with a vertex for each side of its creases: the old vertex of each, triangles, unit normals.
+def parted(
+    surface: Surface, given: np.ndarray | None = None, more: np.ndarray | None = None
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """A closed surface with a vertex for each side of its edges: the old vertex of each, triangles, unit normals.
 
-    The old vertices come first, in their order. (n,), (m, 3) and (n, 3).
+    given: (m, 3, 3) unit normals at corners, which win, 0 where there is none: a vertex is parted by them alone; more:
+    (m, 3, c) what else parts it. The old vertices come first, in their order. (n,), (m, 3) and (n, 3).
     """
     sharp = creases(surface)
-    fan, corner = surface.fans(sharp).ravel(), surface.triangles.ravel()
-    sides, first, side = np.unique(fan, return_index=True, return_inverse=True)
-    vertex = corner[first]
-    further = np.ones(len(sides), bool)
+    return parted_by(surface, surface.fans(sharp), corner_normals(surface, sharp), given, more)
+
+
+def parted_by(
+    surface: Surface,
+    sides: np.ndarray,
+    normals: np.ndarray,
+    given: np.ndarray | None = None,
+    more: np.ndarray | None = None,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """As `parted`, of any surface whose corners are of the sides (m, 3), with normals (m, 3, 3) that are of them."""
+    if given is not None:
+        known = np.any(given, axis=2)
+        rows = np.column_stack([surface.triangles[known], np.round(given[known] / _SAME_NORMAL)])
+        sides, normals = sides.copy(), np.where(known[:, :, None], given, normals)
+        sides[known] = sides.max() + 1 + np.unique(rows, axis=0, return_inverse=True)[1].reshape(-1)
+    if more is not None:
+        rows = np.concatenate([sides[:, :, None], np.round(more / _SAME_PLACE)], axis=2)
+        sides = np.unique(rows.reshape(-1, rows.shape[2]), axis=0, return_inverse=True)[1].reshape(sides.shape)
+    _, first, side = np.unique(sides.ravel(), return_index=True, return_inverse=True)
+    vertex = surface.triangles.ravel()[first]
+    further = np.ones(len(first), bool)
     further[np.unique(vertex, return_index=True)[1]] = False
     place = np.where(further, len(surface.vertices) + np.cumsum(further) - 1, vertex)
     old = np.concatenate([np.arange(len(surface.vertices)), vertex[further]])
-    normals = np.tile([0.0, 0.0, 1.0], (len(old), 1))
-    found = corner_normals(surface, sharp).reshape(-1, 3)[first]
-    known = np.linalg.norm(found, axis=1) > 0
-    normals[place[known]] = found[known]
-    return old, place[side].reshape(-1, 3), normals
+    placed = np.tile([0.0, 0.0, 1.0], (len(old), 1))
+    found = normals.reshape(-1, 3)[first]
+    some = np.any(found, axis=1)
+    placed[place[some]] = found[some]
+    return old, place[side].reshape(-1, 3), placed
 
 
 def unit(vectors: np.ndarray) -> np.ndarray:

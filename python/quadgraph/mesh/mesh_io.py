@@ -107,7 +107,7 @@ def stood_up(vectors: np.ndarray, up: str) -> np.ndarray:
     """Vectors (..., 3) of a file whose axis `up` points up, with y up; right-handed as before. Raises InputError."""
     if up not in UPS:
         raise InputError(f"up: {up!r} found, allowed are {' and '.join(UPS)}")
-    return vectors if up == "y" else np.stack([vectors[..., 0], vectors[..., 2], -vectors[..., 1]], axis=-1)
+    return FileFrame(up=up).placed(vectors)
 
 
 def _guarded(reader: Callable[[Path], Arrays], path: Path) -> Arrays:

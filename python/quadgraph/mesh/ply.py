@@ -53,6 +53,21 @@ def read_coloured_ply(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray | 
     return rows[:, :3], triangles, rows[:, 3:] / (1 if kind.kind == "f" else np.iinfo(kind).max)
 
 
+def read_ply_normals(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
+    """Vertices and triangles as `read_ply`, and the numbers `nx`, `ny`, `nz` of the vertices, (n, 3), or None.
+
+    Raises InputError also where some of the three are missing.
+    """
+    data = path.read_bytes()
+    header = read_header(path, data)
+    names = {item.name for each in header.elements if each.name == "vertex" for item in each.properties}
+    wanted = ("nx", "ny", "nz")
+    if not names.intersection(wanted):
+        return *_read(path, data, header, "xyz"), None
+    rows, triangles = _read(path, data, header, (*"xyz", *wanted))
+    return rows[:, :3], triangles, rows[:, 3:]
+
+
 def _read(path: Path, data: bytes, header: Header, of_vertices: Sequence[str]) -> Arrays:
     """(n, k) numbers of the vertices, the first three their places, and triangles."""
     body = _Body.of(path, data, header)

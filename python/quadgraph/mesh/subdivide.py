@@ -17,6 +17,7 @@ MOST_STEPS = 5
 MOST_TRIANGLES = 20_000_000
 _STRAIGHT_DEGREES = 60.0  # a crease that turns more at a vertex has a corner there
 _LONGEST = 0.25  # of the edge, how far its middle may move
+_NEARLY_NOTHING = 1e-200  # mm, by which an edge can be divided
 
 
 def check(steps: int) -> None:
@@ -48,7 +49,7 @@ def _step(surface: Surface, sharp: np.ndarray) -> tuple[Surface, np.ndarray]:
     offsets = np.where(sharp[:, None], _along_creases(surface, sharp), _over_smooth(surface, sharp))
     length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
     far = np.linalg.norm(offsets, axis=1)
-    offsets *= np.minimum(1, _LONGEST * length / np.maximum(far, np.finfo(float).tiny))[:, None]
+    offsets *= np.minimum(1, _LONGEST * length / np.maximum(far, _NEARLY_NOTHING))[:, None]
     triangles = _four(surface.triangles, len(surface.vertices) + face_edges)
     while True:
         finer = Surface(np.concatenate([surface.vertices, ends.mean(axis=1) + offsets]), triangles).rounded()

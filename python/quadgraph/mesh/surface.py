@@ -175,6 +175,12 @@ class FileFrame:
     unit_mm: float = 1.0
     up: str = "y"
 
+    def placed(self, vectors: np.ndarray) -> np.ndarray:
+        """Vectors (..., 3) of the file in mm with y up."""
+        if self.up == "z":
+            vectors = np.stack([vectors[..., 0], vectors[..., 2], -vectors[..., 1]], axis=-1)
+        return vectors * self.unit_mm
+
     def box(self, places: np.ndarray) -> str:
         """Say where places (k, 3), mm, lie between, in the file's coordinates."""
         found = np.asarray(places) / self.unit_mm

@@ -15,6 +15,7 @@ from quadgraph.baking.budget import record as budget
 from quadgraph.baking.budget.displayed import Reference
 from quadgraph.baking.budget.trials import Setting, Trial
 from quadgraph.baking.pipeline import BakeOptions
+from quadgraph.baking.report import BakeReport
 from quadgraph.base.errors import FormatError, InputError
 from quadgraph.file import qgraph_file
 from quadgraph_validation.accuracy import budget_study as study
@@ -71,7 +72,7 @@ def test_smaller_surfaces_are_measured_for_as_long_as_they_keep_the_error(monkey
     monkeypatch.setattr(plan, "_levels", lambda whole, options, report: options.surface_vertices)
     bench = Measured(1000)
     wanted = law(round(1000 * at)).error / core.MEASURED_SHARE
-    plan._descend(bench, None, BakeOptions(), wanted, pipeline.BakeReport(""), lambda text: None)
+    plan._descend(bench, None, BakeOptions(), wanted, BakeReport(""), lambda text: None)
     assert [count for count, _ in bench.candidates] == [1000, *tried]
     assert bench.kept(wanted).surface_vertices == min(c for c, _ in bench.candidates if c >= 1000 * at)
 

@@ -83,6 +83,13 @@ def test_without_a_folder_to_keep_it_in_a_body_is_baked_for_the_moment(mesh, cac
     assert any("not kept" in line for line in told)
 
 
+def test_pictures_of_a_gltf_count(tmp_path):
+    mesh, picture = tmp_path / "a.gltf", tmp_path / "a b.png"
+    mesh.write_text('{"asset": {"version": "2.0"}, "images": [{"uri": "a%20b.png"}]}')
+    picture.write_bytes(b"1")
+    assert kept.mesh_files(mesh) == [mesh, picture]
+
+
 def test_buffers_of_a_gltf_count(tmp_path):
     document = '{"asset": {"version": "2.0"}, "buffers": [{"uri": "a.bin", "byteLength": 4}]}'
     path = tmp_path / "a.gltf"

@@ -36,7 +36,8 @@ from quadgraph.baking.budget.trials import (
     trial,
 )
 from quadgraph.baking.budget.usual_lights import lights as lights_around
-from quadgraph.baking.pipeline import BakeOptions, BakeReport, Level, Prepared
+from quadgraph.baking.pipeline import BakeOptions, Level, Prepared
+from quadgraph.baking.report import BakeReport
 from quadgraph.base.errors import InputError, ToolError
 from quadgraph.base.progress import ProgressCallback
 from quadgraph.core import load_core

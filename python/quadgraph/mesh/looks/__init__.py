@@ -1,1 +1,1 @@
-"""What mesh files say of colour: textures, colours at vertices and of parts, and volumes of glTF."""
+"""What mesh files say of looks: normals and their textures; colours of textures, vertices and parts, media of glTF."""

@@ -33,7 +33,7 @@ def read_gltf_looks(path: Path) -> ColouredMesh:
 
 
 def _coloured(file: GltfFile) -> ColouredMesh:
-    looks = _Looks(file)
+    looks = Looks(file)
     mesh = ColouredMesh([], looks.notes, looks.pictures.files)
     for number, transform in sorted(file.transforms().items()):
         for primitive in file.mesh(file.document["nodes"][number]).get("primitives", []):
@@ -42,7 +42,7 @@ def _coloured(file: GltfFile) -> ColouredMesh:
     return mesh
 
 
-def _part(file: GltfFile, primitive: dict, transform: np.ndarray, looks: _Looks) -> Part:
+def _part(file: GltfFile, primitive: dict, transform: np.ndarray, looks: Looks) -> Part:
     vertices, triangles = file.positions([primitive])
     look, (placed, texcoord) = looks.of(primitive.get("material"))
     attributes = primitive["attributes"]
@@ -73,7 +73,7 @@ def _accessor(file: GltfFile, number: int, name: str) -> np.ndarray:
     return values
 
 
-class _Looks:
+class Looks:
     """Materials of a file by their numbers, each read once; notes: what of them was left out."""
 
     def __init__(self, file: GltfFile) -> None:
@@ -102,18 +102,19 @@ class _Looks:
             self.notes.append(f"{where}: a metal, of which the colour alone is taken")
         roughness = number_of(where, plain, "roughnessFactor", 1.0, 0, 1) ** 2  # alpha, as in glTF's appendix B
         info = plain.get("baseColorTexture")
-        found = None if info is None else self._texture(where, info)
-        placed = (np.eye(3)[:2], 0) if info is None else _place(where, info)
+        found = None if info is None else self.texture(where, info, "baseColorTexture")
+        placed = (np.eye(3)[:2], 0) if info is None else place_of(where, info)
         stated = roughness if "roughnessFactor" in plain else None
         return Look(name, (red, green, blue), found, medium, eta_of(where, extensions), stated), placed
 
-    def _texture(self, where: str, info: dict) -> Texture:
+    def texture(self, where: str, info: dict, field: str) -> Texture:
+        """The picture that a field of a material names, and how it goes on. Raises InputError."""
         document = _item(self.file, "textures", info["index"])
         others = document.get("extensions", {})
         source = next((others[name]["source"] for name in _SOURCES if name in others), document.get("source"))
         if source is None:
             found = ", ".join(others) or "nothing"
-            raise InputError(f"{where}, baseColorTexture: no picture but {found} found; write it as PNG or JPEG")
+            raise InputError(f"{where}, {field}: no picture but {found} found; write it as PNG or JPEG")
         sampler = _item(self.file, "samplers", document["sampler"]) if "sampler" in document else {}
         wraps = []
         for name in ("wrapS", "wrapT"):
@@ -147,7 +148,7 @@ def _item(file: GltfFile, kind: str, number: object) -> dict[str, Any]:
     return items[number]
 
 
-def _place(where: str, info: dict) -> tuple[np.ndarray, int]:
+def place_of(where: str, info: dict) -> tuple[np.ndarray, int]:
     """KHR_texture_transform as (2, 3), and the set of coordinates."""
     said = info.get("extensions", {}).get("KHR_texture_transform", {})
     here = f"{where}, KHR_texture_transform"

@@ -19,7 +19,8 @@ from quadgraph.baking.budget.displayed import DisplayedFile as File
 from quadgraph.baking.budget.plan import Bench
 from quadgraph.baking.budget.trials import BudgetScene, Setting, Trial, forecast
 from quadgraph.baking.budget.usual_lights import lights
-from quadgraph.baking.pipeline import BakeOptions, BakeReport, Level, Prepared
+from quadgraph.baking.pipeline import BakeOptions, Level, Prepared
+from quadgraph.baking.report import BakeReport
 from quadgraph.mesh import lod, mesh_io, repair
 from quadgraph_validation.bodies import level_chains
 from quadgraph_validation.bodies.level_chains import ChainSubject
