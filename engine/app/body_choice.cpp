@@ -25,6 +25,13 @@ void choose_material(State& state, const std::string& text) {
   state.scene.materials.clear();
 }
 
+void choose_body(State& state, std::optional<std::uint32_t> number) {
+  if (state.bodies.size() < 2) return;
+  const bool one = number && *number < state.bodies.size();
+  state.body = one ? state.bodies[*number] : std::string();
+  state.say(one ? "Body: " + state.body : "All bodies");
+}
+
 void take_bodies(State& state, const std::vector<std::string>& bodies) {
   state.bodies = bodies;
   if (std::ranges::find(bodies, state.body) == bodies.end()) state.body.clear();

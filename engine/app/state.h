@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/app/brush.h"
 #include "engine/render/engine.h"
+#include "engine/scene/brush.h"
 #include "engine/scene/scene.h"
 
 namespace quadgraph {

@@ -312,6 +312,16 @@ class Engine:
             self._take(layers.convergence["solve"])
         return Picture(layers, self._engine.metadata, options)
 
+    def body_at(
+        self, x: float, y: float, camera: Camera | str | None = None, **picture: Unpack[PictureOptions]
+    ) -> str | None:
+        """Return the name of the body that such a picture, as `render` takes it, shows at (x, y), pixels right and down
+        from its corner: one of `bodies`, "" of a file of one body, None beside them. Raises InputError.
+        """
+        around = {} if camera is None or isinstance(camera, str) else plain_members(camera)
+        members = json.dumps({"camera": around, "picture": plain_members(picture)})
+        return core.body_at(self._engine, float(x), float(y), members, camera if isinstance(camera, str) else "")
+
     @property
     def box(self) -> tuple[Floats, Floats]:
         """The lowest and the highest corner, (3,) mm each, of the box around the body at rest."""

@@ -1,4 +1,4 @@
-#include "engine/app/brush.h"
+#include "engine/scene/brush.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,9 @@
 #include <glm/geometric.hpp>
 #include <iterator>
 
+#include "engine/base/error.h"
 #include "engine/optics/material.h"
+#include "engine/scene/layers.h"
 
 namespace quadgraph {
 namespace {
@@ -107,6 +109,31 @@ void Brush::lead(Scene& scene, std::size_t layer, const Touch& touch) const {
     last.stroke.push_back(touch.here.at);
     if (last.mirrored) last.mirrored->stroke.push_back(touch.mirrored.value_or(touch.here).at);
   }
+}
+
+bool Brush::touch(Scene& scene, std::size_t& layer, const Touch& touch) {
+  if (tool == BrushTool::pick) {
+    pick(scene, touch);
+    tool = BrushTool::paint;
+    return false;
+  }
+  if (scene.layers.empty()) add_layer(scene, layer);
+  EditLayer& active = scene.layers.at(layer);
+  if (!active.visible) {
+    throw InputError("'" + active.name + "' is hidden: show it by its eye, or choose another layer, to paint or erase");
+  }
+  if (tool == BrushTool::paint) {
+    begin(scene, layer, touch);
+  } else {
+    erase(active, touch);
+  }
+  return true;
+}
+
+void Brush::go_on(Scene& scene, std::size_t layer, const Touch& touch) const {
+  if (layer >= scene.layers.size()) return;
+  if (tool == BrushTool::paint) lead(scene, layer, touch);
+  if (tool == BrushTool::erase) erase(scene.layers[layer], touch);
 }
 
 void Brush::erase(EditLayer& layer, const Touch& touch) {
