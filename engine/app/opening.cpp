@@ -39,6 +39,7 @@ Scene opened(const std::filesystem::path& file, const Scene& before) {
   Scene scene = before;
   scene.body = file;
   scene.layers.clear();
+  scene.placements.clear();
   scene.deformation.clear();
   scene.cuts.clear();
   scene.render.show = {};

@@ -71,8 +71,8 @@ void add_square(const Cover& cover, int column, int row, std::vector<Segment>& s
   const auto x = static_cast<float>(column), y = static_cast<float>(row);
   const std::array<bool, 4> in{cover.at(column, row), cover.at(column + 1, row), cover.at(column + 1, row + 1),
                                cover.at(column, row + 1)};
-  const std::array<glm::vec2, 4> sides{cover.clip(x + 0.5f, y), cover.clip(x + 1, y + 0.5f), cover.clip(x + 0.5f, y + 1),
-                                       cover.clip(x, y + 0.5f)};
+  const std::array<glm::vec2, 4> sides{cover.clip(x + 0.5f, y), cover.clip(x + 1, y + 0.5f),
+                                       cover.clip(x + 0.5f, y + 1), cover.clip(x, y + 0.5f)};
   std::array<glm::vec2, 4> crossed;
   std::size_t count = 0;
   for (std::size_t k = 0; k < 4; ++k) {

@@ -4,6 +4,7 @@
 #include "engine/base/error.h"
 #include "engine/devices/open_device.h"
 #include "engine/optics/material.h"
+#include "engine/reference/tet_locator.h"
 #include "engine/render/body_roughness.h"
 #include "engine/render/display/display_faces.h"
 #include "engine/render/display/display_motion.h"
@@ -80,14 +81,19 @@ struct Engine::Implementation {
   std::optional<RadianceProbe> probe;        // made at first use
   device::Buffer triangle_face;              // display_faces.h, made at first use
   std::vector<PassStats> deformation_passes, irradiance_passes, light_passes, gather_passes, render_passes;
-  bool deformed = false;                                // since the last solve
-  std::string deformation;                              // in words
-  std::optional<Ground> ground;                         // made at first use
-  std::optional<Surroundings> surroundings;             // made at first use
-  std::shared_ptr<const ImagePyramid> roughness_image;  // of the last picture
-  device::Buffer roughness_texels, rest_vertices;       // at first use
-  std::optional<Legend> legend;                         // of the last picture
-  FalseColours false_colours;                           // the same
+  bool deformed = false;        // since the last solve
+  std::string deformation;      // in words
+  std::vector<Deformer> steps;  // of the deformation, without the poses of bodies
+  BodyPoses poses;
+  std::shared_ptr<const VertexBodies> vertices_of_bodies;  // made at first use
+  std::optional<TetLocator> locator;                       // the same, of level 0 at rest
+  std::optional<std::string> overlaps;                     // what is said of overlaps of the present poses, once asked
+  std::optional<Ground> ground;                            // made at first use
+  std::optional<Surroundings> surroundings;                // made at first use
+  std::shared_ptr<const ImagePyramid> roughness_image;     // of the last picture
+  device::Buffer roughness_texels, rest_vertices;          // at first use
+  std::optional<Legend> legend;                            // of the last picture
+  FalseColours false_colours;                              // the same
   PathMethod paths;
   std::optional<Workspace> motion_work;      // of a surface without levels, made at first use
   std::vector<gpu::PathTool> cut_tools;      // what is cut away
@@ -107,6 +113,11 @@ struct Engine::Implementation {
     sphere.outline = std::make_shared<const std::vector<glm::vec3>>(device::download<glm::vec3>(device, mesh.vertices));
     return sphere;
   }
+
+  // engine_shape.cpp
+  std::vector<Deformer> checked(std::span<const Deformer> list, const BodyPoses& wanted);
+  void set_shape(std::span<const Deformer> list, const BodyPoses& wanted);
+  void add_overlaps(SolveReport& of);
 
   // Throws InputError where there are none.
   Simulation& levels() const {

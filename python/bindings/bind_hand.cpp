@@ -69,26 +69,28 @@ std::vector<std::string> methods_of_body(Stage& stage) {
 }  // namespace
 
 void bind_hand(py::module_& module) {
-  module.def("body_at", &body_at, py::arg("engine"), py::arg("x"), py::arg("y"), py::arg("json"), py::arg("view") = "",
-             "Name of the body that a picture shows at a place, pixels right and down from its corner, with the members "
-             "`camera` and `picture` of a scene and a text in place of azimuth, elevation and distance; None beside "
-             "them. Raises InputError.");
+  module.def(
+      "body_at", &body_at, py::arg("engine"), py::arg("x"), py::arg("y"), py::arg("json"), py::arg("view") = "",
+      "Name of the body that a picture shows at a place, pixels right and down from its corner, with the members "
+      "`camera` and `picture` of a scene and a text in place of azimuth, elevation and distance; None beside "
+      "them. Raises InputError.");
   module.def(
       "stage_body_at",
       [](Stage& stage, double x, double y) {
         return name_of_body(stage.engine().graph(), picked_at(stage, place_from(x, y)));
       },
       py::arg("stage"), py::arg("x"), py::arg("y"), "The same in the picture of the scene that a stage shows.");
-  module.def("after_brush", &after_brush, py::arg("stage"), py::arg("brush"), py::arg("places"), py::arg("begins"),
-             "JSON of {edits, layer, touched, colour, distance} after a brush (engine/scene/painting.h) went over places "
-             "of the picture, pixels. Raises InputError.");
+  module.def(
+      "after_brush", &after_brush, py::arg("stage"), py::arg("brush"), py::arg("places"), py::arg("begins"),
+      "JSON of {edits, layer, touched, colour, distance} after a brush (engine/scene/painting.h) went over places "
+      "of the picture, pixels. Raises InputError.");
   module.def("after_layer", &after_layer, py::arg("stage"), py::arg("json"),
              "The same after a change of the layers (engine/scene/painting.h). Raises InputError.");
   module.def(
-      "usual_brush",
-      [](Stage& stage) { return to_json(Brush::for_body(stage.engine().bounds().radius)).dump(); }, py::arg("stage"),
-      "JSON of the brush that a body of that size has at first.");
-  module.def("methods_of_body", &methods_of_body, py::arg("stage"), "Names of the methods that its file has levels for.");
+      "usual_brush", [](Stage& stage) { return to_json(Brush::for_body(stage.engine().bounds().radius)).dump(); },
+      py::arg("stage"), "JSON of the brush that a body of that size has at first.");
+  module.def("methods_of_body", &methods_of_body, py::arg("stage"),
+             "Names of the methods that its file has levels for.");
 }
 
 }  // namespace quadgraph::python

@@ -79,7 +79,8 @@ class Stage:
         if self._scene is None or self._scene.body != wanted.body:
             self._forget()
         self._open.show(wanted._compiled())
-        moved = self._scene is not None and self._scene.deformation != wanted.deformation
+        shapes = [(scene.deformation, scene.placements) for scene in (self._scene, wanted) if scene is not None]
+        moved = shapes[0] != shapes[-1]
         self._scene = wanted
         if self._engine is not None and moved:
             self._engine._solution = None

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from test_window import PANEL, SIZE, open_window, pytestmark, server
+from test_window_panel import TALL, press, put
 
 from quadgraph import Engine
 from quadgraph.baking.bodies import BodyMesh, bake_bodies
@@ -19,6 +20,7 @@ from shapes import icosphere, write_obj
 __all__ = ["open_window", "pytestmark", "server"]
 
 LEFT, RIGHT = (PANEL + 140, SIZE[1] // 2), (SIZE[0] - 140, SIZE[1] // 2)  # the middles of the balls
+SHAPE, MOVE_Y = 662, 731  # heights of a section to open, and of a slider in it
 BESIDE = (PANEL + 40, SIZE[1] - 200)
 LOOK = ["--view", "0,0", "--radiance", "lambertian", "--light", "ambient:1", "--no-ground", "--exposure", "0"]
 ORANGE = np.array([255, 170, 80])
@@ -73,6 +75,37 @@ def test_a_click_chooses_the_body_whose_material_the_keys_change(open_window, ba
     saved = json.loads((tmp_path / "balls-2.json").read_text())
     assert saved["material"] != "wax"
     assert "materials" not in saved or not saved["materials"]
+    hand.close()
+
+
+def test_the_chosen_body_moves_by_a_slider_and_back_by_undo(open_window, balls, tmp_path: Path):
+    hand = open_window("--material", "porcelain", *LOOK, body=balls)
+    hand.do("windowsize", "--sync", hand.window, str(SIZE[0]), str(TALL))
+    hand.picture()
+    click(hand, (RIGHT[0], TALL // 2))
+    press(hand, SHAPE)
+
+    def heights():
+        """Of the middle of the left and of the right ball, rows."""
+        seen = hand.screen()[:TALL, PANEL : SIZE[0]].max(axis=2) > 100
+        half = seen.shape[1] // 2
+        return [np.flatnonzero(part[: TALL - 80].any(axis=1)).mean() for part in (seen[:, :half], seen[:, half:])]
+
+    before = heights()
+    assert abs(before[0] - before[1]) < 3
+    for _ in range(4):  # a busy window may lose a key
+        put(hand, MOVE_Y, "4", "ctrl")
+        moved = heights()
+        if abs(moved[0] - moved[1] - 90) < 10:  # 4 mm of 10 that are 224 pixels
+            break
+    assert moved[0] - moved[1] == pytest.approx(90, abs=10)
+    hand.keys("ctrl+s")
+    hand.settle()
+    saved = json.loads((tmp_path / "balls-1.json").read_text())
+    assert saved["placements"] == {"right": {"position": [0, 4, 0], "rotation": [0, 0, 0]}}
+    hand.keys("ctrl+z")
+    after = heights()
+    assert abs(after[0] - after[1]) < 3
     hand.close()
 
 
