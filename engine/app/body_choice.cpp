@@ -3,17 +3,8 @@
 #include <algorithm>
 
 namespace quadgraph {
-namespace {
-
-const std::string& material_of_body(const Scene& scene, const std::string& body) {
-  const auto own = scene.materials.find(body);
-  return own == scene.materials.end() ? scene.material : own->second;
-}
-
-}  // namespace
-
 const std::string& chosen_material(const State& state) {
-  return material_of_body(state.scene, state.body);
+  return said_material(state.scene, state.body);
 }
 
 void choose_material(State& state, const std::string& text) {

@@ -206,6 +206,7 @@ std::optional<Touch> Viewer::pointed_at() const {
   const auto found = picker_.pick(camera, pointer());
   if (!found) return std::nullopt;
   Touch touch{touched(*found, camera)};
+  if (!state_.bodies.empty()) touch.body = state_.bodies[picker_.body_of(*found)];
   const auto other = other_side(*found);
   if (other) touch.mirrored = mirrored(touch.here, state_.brush.mirror, *other);
   return touch;

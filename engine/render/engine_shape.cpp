@@ -1,4 +1,6 @@
 // How an engine moves its bodies, and what is said where they come to overlap.
+#include <algorithm>
+
 #include "engine/render/engine_implementation.h"
 #include "engine/render/overlap.h"
 

@@ -39,7 +39,8 @@ bool reaches_into(const PlacedBody& one, const PlacedBody& other, std::uint32_t 
   const glm::dmat3 back = glm::transpose(move.turn);
   for (std::size_t v = 0; v < one.vertices.size(); v += step) {
     const glm::dvec3& p = one.vertices[v];
-    const bool near = glm::all(glm::greaterThanEqual(p, other.box.low)) && glm::all(glm::lessThanEqual(p, other.box.high));
+    const bool near =
+        glm::all(glm::greaterThanEqual(p, other.box.low)) && glm::all(glm::lessThanEqual(p, other.box.high));
     if (!near) continue;
     const auto place = locator.find(back * (p - move.shift));
     if (place && level.body_of_tet(place->tet) == number) return true;

@@ -54,11 +54,11 @@ Brush Brush::for_body(float radius) {
 }
 
 // Colour and distance on their way from the material's to the brush's, as coefficients.
-Edit Brush::stroke_on(const Scene& scene) const {
+Edit Brush::stroke_on(const Scene& scene, const std::string& body) const {
   if (!by_colour) return edit;
   MaterialLook put = look;
   put.eta = default_eta;
-  if (const auto& own = look_of(scene.material)) {
+  if (const auto& own = look_of(said_material(scene, body))) {
     put.eta = own->eta;
     put.colour = glm::mix(own->colour, look.colour, strength);
     put.distance = own->distance * std::pow(look.distance / own->distance, strength);
@@ -81,7 +81,7 @@ Placement Brush::placement_at(const TouchPlace& place) const {
 }
 
 Edit Brush::stroke_at(const Scene& scene, const Touch& touch) const {
-  Edit made = stroke_on(scene);
+  Edit made = stroke_on(scene, touch.body);
   if (touch.mirrored) made.mirrored.emplace();
   if (stamps()) {
     made.radius = 0;
@@ -149,7 +149,7 @@ void Brush::pick(const Scene& scene, const Touch& touch) {
     const bool whole = each.operation == Edit::Operation::set && each.sigma_a && each.sigma_s_prime;
     return whole && reaches(each, touch.here.at);
   });
-  const auto& own = look_of(scene.material);
+  const auto& own = look_of(said_material(scene, touch.body));
   if (own) look = *own;
   if (last == seen.rend()) return;
   gpu::Material painted{};

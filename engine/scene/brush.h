@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "engine/base/names.h"
@@ -16,6 +17,7 @@ namespace quadgraph {
 struct Touch {
   TouchPlace here;
   std::optional<TouchPlace> mirrored{};
+  std::string body{};  // its name; empty of a file of one
 };
 
 // Where the brush touches what was picked in a picture seen from `camera`.
@@ -69,7 +71,7 @@ struct Brush {
   void pick(const Scene& scene, const Touch& touch);
 
  private:
-  Edit stroke_on(const Scene& scene) const;
+  Edit stroke_on(const Scene& scene, const std::string& body) const;
   Edit stroke_at(const Scene& scene, const Touch& touch) const;
   Placement placement_at(const TouchPlace& place) const;
 };

@@ -41,7 +41,9 @@ std::optional<Touch> touch_at(Stage& stage, const glm::vec2& pixels) {
   const auto found = picked_at(stage, pixels);
   if (!found) return std::nullopt;
   const float aspect = static_cast<float>(scene.render.width) / static_cast<float>(scene.render.height);
-  return Touch{touched(*found, place_camera(scene.view, stage.engine().bounds(), aspect))};
+  Touch touch{touched(*found, place_camera(scene.view, stage.engine().bounds(), aspect))};
+  touch.body = body_name(*found, stage.engine().graph());
+  return touch;
 }
 
 void rename(EditLayer& layer, const JsonField& value) {

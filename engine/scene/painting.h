@@ -1,6 +1,11 @@
 // Painting that is asked for in JSON, by a page in a browser: the same brush and layers that a hand in the window has.
 #pragma once
 
+#include <cstddef>
+#include <glm/vec2.hpp>
+#include <optional>
+#include <span>
+
 #include "engine/scene/brush.h"
 #include "engine/scene/json_field.h"
 #include "engine/scene/stage.h"

@@ -252,6 +252,11 @@ Json picture_json(const Scene& scene) {
 
 }  // namespace
 
+const std::string& said_material(const Scene& scene, const std::string& body) {
+  const auto own = scene.materials.find(body);
+  return own == scene.materials.end() ? scene.material : own->second;
+}
+
 Scene scene_from(const JsonField& document) {
   Scene scene;
   scene.body = document.at("body").text();

@@ -35,6 +35,9 @@ struct Scene {
   bool operator==(const Scene&) const = default;
 };
 
+// The text of the material of a body by its name; without one, or of one that has none of its own, that of all.
+const std::string& said_material(const Scene& scene, const std::string& body);
+
 // Reads the members of a scene file that say what is shown, and leaves others alone. Throws InputError with the path of
 // what is wrong.
 Scene scene_from(const JsonField& document);

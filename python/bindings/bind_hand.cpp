@@ -17,8 +17,7 @@ namespace {
 
 py::object name_of_body(const QuadGraph& graph, const std::optional<Picked>& picked) {
   if (!picked) return py::none();
-  if (graph.bodies().empty()) return py::str("");
-  return py::str(graph.bodies()[body_of(*picked, graph)]);
+  return py::str(body_name(*picked, graph));
 }
 
 glm::vec2 place_from(double x, double y) {

@@ -90,6 +90,11 @@ std::uint32_t body_of(const Picked& picked, const QuadGraph& graph) {
   return graph.levels()[0].body_of_face(mesh.face[mesh.triangles[picked.triangle].x]);
 }
 
+const std::string& body_name(const Picked& picked, const QuadGraph& graph) {
+  static const std::string none;
+  return graph.bodies().empty() ? none : graph.bodies()[body_of(picked, graph)];
+}
+
 std::optional<Picked> nearest_to(const DisplayMesh& mesh, std::span<const glm::vec3> vertices,
                                  const glm::vec3& at_rest) {
   const glm::uvec3* triangle = nullptr;

@@ -7,6 +7,7 @@
 #include <glm/vec3.hpp>
 #include <optional>
 #include <span>
+#include <string>
 
 #include "engine/file/graph.h"
 #include "engine/render/display/camera.h"
@@ -24,6 +25,9 @@ struct Picked {
 
 // The body that it is on, by QuadGraph::bodies; 0 where there is one without a name.
 std::uint32_t body_of(const Picked& picked, const QuadGraph& graph);
+
+// Its name; empty where there is one without.
+const std::string& body_name(const Picked& picked, const QuadGraph& graph);
 
 // The nearest point of the display mesh, whose vertices are now at `vertices`, mm, on the ray through `at`: of a
 // picture seen from `camera`, -1 to 1 from left to right and from bottom to top. What is in

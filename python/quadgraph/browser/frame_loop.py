@@ -31,7 +31,7 @@ from quadgraph.browser.shown_scene import ShownScene
 _SETTLED_S = 0.25  # after the last change, before the scene is solved at rest
 _QUALITY = {False: 80, True: 93}  # of JPEG, by whether the frame is the one at rest
 # Members that a solve depends on.
-_SOLVED = ("material", "materials", "lights", "edits", "deformation", "cuts", "solver")
+_SOLVED = ("material", "materials", "lights", "edits", "placements", "deformation", "cuts", "solver")
 
 
 # What ends a picture and not the server: of a method, say, that the file has no levels for.

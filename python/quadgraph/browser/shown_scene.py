@@ -21,6 +21,7 @@ ALLOWED = (
     "/camera",
     "/material",
     "/materials",
+    "/placements",
     "/lights",
     "/deformation",
     "/cuts",
@@ -107,7 +108,13 @@ class ShownScene:
             body = pointer.removeprefix("/materials/")
             self._check_bodies([body])
             self._change(pointer, {"/materials": {**self.document.get("materials", {}), body: value}})
-        elif pointer == "/materials":
+        elif pointer.startswith("/placements/"):
+            body, *member = pointer.removeprefix("/placements/").split("/")
+            self._check_bodies([body])
+            poses = self.document.get("placements", {})
+            pose = {**poses.get(body, {}), member[0]: value} if member else value
+            self._change(pointer, {"/placements": {**poses, body: pose}})
+        elif pointer in {"/materials", "/placements"}:
             self._check_bodies(value if isinstance(value, dict) else [])
             self._change(pointer, {pointer: value})
         elif pointer.split("/")[1] == "material":
@@ -258,7 +265,8 @@ class ShownScene:
         members = ("material", "lights", "edits", "deformation", "cuts", "solver")
         for member in (*members, *(("camera",) if camera else ())):
             self._file.set(f"/{member}", wanted[member])
-        self._file.set("/materials", wanted.get("materials", {}))
+        for member in ("materials", "placements"):
+            self._file.set(f"/{member}", wanted.get(member, {}))
         self._file.set("/picture", picture)
         self._scene = None
 
@@ -266,7 +274,7 @@ class ShownScene:
         for name in names:
             if name not in self._bodies:
                 allowed = ", ".join(self._bodies) or "none, it is one body"
-                raise InputError(f"/materials: found the body {shown(name)}, the file has {allowed}")
+                raise InputError(f"bodies: found {shown(name)}, the file has {allowed}")
 
     def _check(self, pointer: str, value: Any) -> None:
         named = set(files(value))

@@ -84,6 +84,32 @@ TEST_CASE("paint has the colour that was asked for, as strong as that, and can b
   Brush::erase(scene.layers[0], {{.at = {0, 0, 0}}});
 }
 
+TEST_CASE("of several bodies a stroke begins from the colour of the one that is touched") {
+  Brush brush = Brush::for_body(15);
+  Scene scene;
+  scene.material = "wholemilk";
+  scene.materials = {{"stone", "reflectance=.1/.6/.1,mean_free_path=1"}};
+  scene.layers = {{.name = "Layer 1"}};
+  Touch touch{{.at = {0, 0, 0}}};
+  const auto picked = [&] {
+    brush.pick(scene, touch);
+    return brush.look.colour;
+  };
+  const glm::vec3 milk = picked();
+  touch.body = "stone";
+  CHECK(glm::distance(picked(), glm::vec3(.1f, .6f, .1f)) < 0.03f);
+  touch.body = "cup";
+  CHECK(picked() == milk);
+  brush.strength = 0;  // nothing of the brush
+  touch.body = "stone";
+  brush.begin(scene, 0, touch);
+  gpu::Material material{};
+  material.sigma_s_prime = scene.layers[0].edits[0].sigma_s_prime.value();
+  material.sigma_a = scene.layers[0].edits[0].sigma_a.value();
+  material.eta = look_of(scene.materials["stone"])->eta;
+  CHECK(glm::distance(look_of(material).colour, glm::vec3(.1f, .6f, .1f)) < 0.03f);
+}
+
 TEST_CASE("a material of a colour and a distance shows them") {
   for (const Swatch& swatch : swatches()) {
     if (swatch.name == "spectralon") continue;  // absorbs nothing: no colour has an inverse there

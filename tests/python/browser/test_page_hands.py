@@ -148,6 +148,12 @@ def test_a_click_chooses_the_body_that_the_material_goes_to(browser, balls):
         assert Select(hand.find("body")).first_selected_option.text == "right"
         hand.after(lambda: Select(hand.find("material")).select_by_value("marble"))
         assert hand.says("said.scene.materials") == {"right": "marble"}
+        slide = "$('position-1').value = 3; $('position-1').dispatchEvent(new Event('input'))"
+        before = hand.picture()
+        moved = hand.after(lambda: browser.execute_script(slide))
+        assert hand.says("said.scene.placements.right.position") == pytest.approx([0, 3, 0], abs=0.1)
+        assert np.abs(moved - before).max() > 50
+        hand.after(hand.find("undo").click)
         hand.drag((-hand.find("view").size["width"] // 2 + 4, 0))
         wait_for(lambda: hand.says("body") == "")
         assert hand.find("material-text").get_attribute("value") == "skin1"

@@ -86,6 +86,29 @@ def test_a_material_is_that_of_all_bodies_or_of_the_one_that_is_named():
     assert made.document == before
 
 
+def test_a_body_is_put_elsewhere_by_parts_of_its_placement():
+    made = ShownScene(quadgraph.Scene(two_cubes.PATH, material="wax", lights=[]), two_cubes.NAMES)
+    before = made.document
+    for x in (1.0, 2.0):
+        made.set("/placements/right/position", [x, 0, 0])
+    made.set("/placements/right/rotation", [0, 0, 45])
+    assert made.document["placements"] == {"right": {"position": (2, 0, 0), "rotation": (0, 0, 45)}}
+    for pointer, value, said in (
+        ("/placements/lid/position", [1, 0, 0], "the file has left, right"),
+        ("/placements", {"lid": {}}, "the file has left, right"),
+        ("/placements/right/scale", 2, "scale"),
+        ("/placements/right/position", [1e9, 0, 0], "position"),
+        ("/placements/right/position", "up", "position"),
+        ("/placements/right/position/0", 1, "position"),
+        ("/placements/right", 7, "right"),
+    ):
+        with pytest.raises(InputError, match=said):
+            made.set(pointer, value)
+    made.undo()
+    made.undo()
+    assert made.document == before
+
+
 def test_a_slider_that_is_drawn_is_one_step(shown):
     for value in (0.2, 0.3, 0.4):
         shown.set("/picture/roughness", value)
@@ -174,7 +197,7 @@ def test_what_a_page_may_not_changes_nothing(shown, pointer, value, said):
 
 def test_all_that_is_allowed_is_there(shown):
     for pointer in ALLOWED:
-        left_out = {"picture": {"roughness": 0.3} | shown.document["picture"], "materials": {}}
+        left_out = {"picture": {"roughness": 0.3} | shown.document["picture"], "materials": {}, "placements": {}}
         found = shown.document | left_out
         for name in pointer.split("/")[1:]:
             found = found[name]

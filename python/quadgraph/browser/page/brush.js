@@ -28,6 +28,7 @@ function greetBrush(told) {
   fill($("body"), ["", ...told.bodies], (name) => name || "All");
   brush = { ...told.brush, tool: "paint" };
   $("brush-colour").value = hex(brush.colour);
+  if (!$("placement").children.length) buildPlacement();
   fill($("method"), told.methods, (name) => name);
   fill($("model"), told.models, (name) => name);
   showBrush();
@@ -51,6 +52,31 @@ function choose(name, at) {
 
 const materialOf = (scene) => String((body && (scene.materials || {})[body]) || scene.material);
 const materialPlace = () => (body ? `/materials/${body}` : "/material");
+
+// Where the chosen body is put: three sliders each of "position", mm, and "rotation", degrees.
+function buildPlacement() {
+  const [low, high] = hello.box, reach = Math.hypot(...[0, 1, 2].map((k) => high[k] - low[k]));
+  const fine = 10 ** Math.floor(Math.log10(reach / 200));  // a tenth of a mm on bodies of some centimetres
+  for (const [member, word, most, step] of [["position", "Move", reach, fine], ["rotation", "Turn", 180, 1]]) {
+    for (let k = 0; k < 3; ++k) {
+      const line = document.createElement("label"), id = `${member}-${k}`;
+      line.innerHTML = `${word} ${"XYZ"[k]} <input id="${id}" type="range" min="${-Math.ceil(most)}" max="${Math.ceil(most)}" step="${step}"><output></output>`;
+      $("placement").append(line);
+      slider(id, (value) => set(`/placements/${body}/${member}`, poseOf(said.scene)[member].map((x, i) => (i === k ? value : x))));
+    }
+  }
+}
+
+const poseOf = (scene) => ({ position: [0, 0, 0], rotation: [0, 0, 0], ...((scene.placements || {})[body] || {}) });
+
+function showPlacement(scene) {
+  $("placement").hidden = !body;
+  const pose = poseOf(scene);
+  for (let k = 0; k < 3 && body; ++k) {
+    put(`position-${k}`, pose.position[k], `${pose.position[k].toFixed(1)} mm`);
+    put(`rotation-${k}`, pose.rotation[k], `${Math.round(pose.rotation[k])}°`);
+  }
+}
 
 // The brush
 
@@ -87,9 +113,17 @@ function painted(state) {
     $("brush-colour").value = hex(state.colour);
     showBrush();
   }
-  if (!state.touched && drag) drag.paint = false;  // the drag turns the bodies
-  if (!state.touched || here.tool === "pick") stroke = null;
-  else flush();
+  if (state.touched && here.tool !== "pick") return flush();
+  stroke = null;
+  if (!state.touched) turnInstead(here);
+}
+
+// A drag that began beside the bodies turns them, by what it has moved meanwhile, and from there on.
+function turnInstead(here) {
+  const [x, y] = here.last;
+  if (here.drag.x !== x || here.drag.y !== y) orbit(x - here.drag.x, here.drag.y - y);
+  Object.assign(here.drag, { paint: false, x, y });
+  if (here.ended) send({ do: "end" });
 }
 
 function flush() {
@@ -101,13 +135,14 @@ function flush() {
 
 function beginStroke(event) {
   drag.paint = true;
-  stroke = { waits: true, ended: false, tool: brush.tool, places: [] };
+  stroke = { waits: true, ended: false, tool: brush.tool, places: [], drag, last: [drag.x, drag.y] };
   paint([place(event)], true);
 }
 
 function leadStroke(event) {
   if (!stroke) return;
   stroke.places.push(place(event));
+  stroke.last = [event.clientX, event.clientY];
   if (!stroke.waits) flush();
 }
 
@@ -202,6 +237,7 @@ function setCut() {
 function controlsOfBrush(frame) {
   layers(frame.layers);
   showCut(frame.scene);
+  showPlacement(frame.scene);
   put("method", frame.scene.solver.method);
   $("method").disabled = frame.scene.cuts.length > 0;
   put("model", frame.scene.solver.model);

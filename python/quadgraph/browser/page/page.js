@@ -204,6 +204,11 @@ function sendSize() {
   set("/picture/height", fit(box.height));
 }
 
+// By pixels.
+function orbit(right, up) {
+  send({ gesture: "orbit", right: DEGREES_PER_PIXEL * right, up: DEGREES_PER_PIXEL * up });
+}
+
 function gestures() {
   const view = $("view");
   view.addEventListener("contextmenu", (event) => event.preventDefault());
@@ -226,10 +231,9 @@ function gestures() {
     if (drag.pan) {
       const height = view.clientHeight;
       send({ gesture: "pan", right: right / height, up: up / height });
-    } else {
-      const turned = { right: DEGREES_PER_PIXEL * right, up: DEGREES_PER_PIXEL * up };
-      send(drag.light ? { gesture: "turn", light: selected, ...turned } : { gesture: "orbit", ...turned });
-    }
+    } else if (drag.light) {
+      send({ gesture: "turn", light: selected, right: DEGREES_PER_PIXEL * right, up: DEGREES_PER_PIXEL * up });
+    } else orbit(right, up);
   });
   const end = () => {
     if (drag && !endStroke()) send({ do: "end" });
