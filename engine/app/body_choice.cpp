@@ -3,17 +3,8 @@
 #include <algorithm>
 
 namespace quadgraph {
-namespace {
-
-const std::string& material_of_body(const Scene& scene, const std::string& body) {
-  const auto own = scene.materials.find(body);
-  return own == scene.materials.end() ? scene.material : own->second;
-}
-
-}  // namespace
-
 const std::string& chosen_material(const State& state) {
-  return material_of_body(state.scene, state.body);
+  return said_material(state.scene, state.body);
 }
 
 void choose_material(State& state, const std::string& text) {
@@ -23,6 +14,13 @@ void choose_material(State& state, const std::string& text) {
   }
   state.scene.material = text;
   state.scene.materials.clear();
+}
+
+void choose_body(State& state, std::optional<std::uint32_t> number) {
+  if (state.bodies.size() < 2) return;
+  const bool one = number && *number < state.bodies.size();
+  state.body = one ? state.bodies[*number] : std::string();
+  state.say(one ? "Body: " + state.body : "All bodies");
 }
 
 void take_bodies(State& state, const std::vector<std::string>& bodies) {

@@ -1,4 +1,6 @@
 // What the viewer does while its body is a preview: it listens, and changes over to the body once that is baked.
+#include <glm/geometric.hpp>
+
 #include "engine/app/body_choice.h"
 #include "engine/app/viewer.h"
 #include "engine/base/error.h"
@@ -44,6 +46,8 @@ void Viewer::change_over(const std::filesystem::path& body) {
 void Viewer::take_up_body() {
   const auto& graph = engine().graph();
   state_.front = graph.front();
+  const RestBox box = rest_box(graph.display().vertices);
+  state_.reach = static_cast<float>(glm::length(box.high - box.low));
   take_bodies(state_, graph.bodies());
   state_.methods = graph.levels().empty() ? std::vector<Method>{} : methods_of(graph.levels()[0]);
 }

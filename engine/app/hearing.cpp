@@ -2,9 +2,9 @@
 // is being made is not the one that is wanted any more, that work ends.
 #include <utility>
 
-#include "engine/app/layers.h"
 #include "engine/app/modes.h"
 #include "engine/app/viewer.h"
+#include "engine/scene/layers.h"
 
 namespace quadgraph {
 namespace {

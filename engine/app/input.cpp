@@ -5,15 +5,20 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
+#include <optional>
+#include <utility>
 
-#include "engine/app/layers.h"
+#include "engine/app/body_choice.h"
 #include "engine/app/viewer.h"
+#include "engine/base/error.h"
 #include "engine/scene/gestures.h"
 
 namespace quadgraph {
 namespace {
 
 constexpr int ring_points = 48;
+constexpr float still = 4;  // pixels of an ordinary display, that a click may go
+constexpr std::chrono::milliseconds outline_time{1500};
 constexpr float degrees_per_height = 180.0f;  // of a drag over the height of the picture
 
 // In clip coordinates.
@@ -60,6 +65,7 @@ void Viewer::begin_or_end_drag(const ButtonEvent& event) {
   drag_mods_ = event.mods;
   if (dragging_) state_.focus_picture = true;
   const bool plain = event.button == GLFW_MOUSE_BUTTON_LEFT && event.mods == 0;
+  begin_or_end_click(plain);
   const auto touch = dragging_ && plain && state_.brush.on ? pointed_at() : std::nullopt;
   painting_ = touch.has_value();
   if (touch && !touch_down(*touch)) dragging_ = painting_ = false;
@@ -73,27 +79,39 @@ void Viewer::begin_or_end_drag(const ButtonEvent& event) {
   knife.to.reset();
 }
 
+// What goes down and up again in one place chooses the body there.
+void Viewer::begin_or_end_click(bool plain) {
+  const bool free = !state_.brush.on && !state_.knife.on && !interface_.has_pointer();
+  if (dragging_) {
+    clicking_ = plain && free ? std::optional(glm::dvec2(pointer_x_, pointer_y_)) : std::nullopt;
+    return;
+  }
+  if (!std::exchange(clicking_, std::nullopt) || !free || state_.bodies.size() < 2) return;
+  const auto found = picker_.pick(seen_from(), pointer());
+  choose_body(state_, found ? std::optional(picker_.body_of(*found)) : std::nullopt);
+  outlined_.clear();  // shown anew, also where it was chosen before
+}
+
+// Around the body that has been chosen, for a while.
+std::vector<Segment> Viewer::chosen_outline() {
+  if (outlined_ != state_.body) outlined_until_ = Clock::now() + outline_time;
+  outlined_ = state_.body;
+  const auto found = std::ranges::find(state_.bodies, state_.body);
+  if (found == state_.bodies.end() || Clock::now() > outlined_until_) return {};
+  return picker_.outline(static_cast<std::uint32_t>(found - state_.bodies.begin()), seen_from(),
+                         command_context().aspect);
+}
+
 // Whether the drag goes on with what begins here.
 bool Viewer::touch_down(const Touch& touch) {
-  Brush& brush = state_.brush;
-  if (brush.tool == BrushTool::pick) {
-    brush.pick(state_.scene, touch);
-    brush.tool = BrushTool::paint;
+  try {
+    const bool goes_on = state_.brush.touch(state_.scene, state_.layer, touch);
+    if (goes_on && state_.refused) state_.say("");
+    return goes_on;
+  } catch (const InputError& error) {
+    state_.say(error.what(), true);
     return false;
   }
-  if (state_.scene.layers.empty()) add_layer(state_.scene, state_.layer);
-  EditLayer& layer = state_.scene.layers[state_.layer];
-  if (!layer.visible) {
-    state_.say("'" + layer.name + "' is hidden: show it by its eye, or choose another layer, to paint or erase", true);
-    return false;
-  }
-  if (state_.refused) state_.say("");
-  if (brush.tool == BrushTool::paint) {
-    brush.begin(state_.scene, state_.layer, touch);
-  } else {
-    Brush::erase(layer, touch);
-  }
-  return true;
 }
 
 void Viewer::handle_key(const KeyEvent& event) {
@@ -128,11 +146,11 @@ void Viewer::handle_motion(const MotionEvent& event) {
   pointer_x_ = event.x;
   pointer_y_ = event.y;
   if (!dragging_) return;
+  if (clicking_ && glm::distance(*clicking_, glm::dvec2(pointer_x_, pointer_y_)) > double{still * window_.scale()}) {
+    clicking_.reset();
+  }
   if (painting_) {
-    const auto touch = pointed_at();
-    if (!touch || state_.layer >= state_.scene.layers.size()) return;
-    if (state_.brush.tool == BrushTool::paint) state_.brush.lead(state_.scene, state_.layer, *touch);
-    if (state_.brush.tool == BrushTool::erase) Brush::erase(state_.scene.layers[state_.layer], *touch);
+    if (const auto touch = pointed_at()) state_.brush.go_on(state_.scene, state_.layer, *touch);
     return;
   }
   if (state_.knife.from) {
@@ -188,6 +206,7 @@ std::optional<Touch> Viewer::pointed_at() const {
   const auto found = picker_.pick(camera, pointer());
   if (!found) return std::nullopt;
   Touch touch{touched(*found, camera)};
+  if (!state_.bodies.empty()) touch.body = state_.bodies[picker_.body_of(*found)];
   const auto other = other_side(*found);
   if (other) touch.mirrored = mirrored(touch.here, state_.brush.mirror, *other);
   return touch;

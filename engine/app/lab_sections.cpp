@@ -135,7 +135,7 @@ void draw_frame(const Measured& measured) {
   if (report.path) tell("Solve", formatted("%u voxels, %u rounds", report.path->solid, report.path->rounds));
   for (const std::string& text :
        {report.budget, report.replaced, report.missed, report.stopped, report.advice, report.mesh_warning,
-        report.model_warning, report.size_warning, report.phase_warning, report.light_warning}) {
+        report.model_warning, report.size_warning, report.phase_warning, report.light_warning, report.deformed}) {
     if (!text.empty()) ImGui::TextWrapped("%s", text.c_str());
   }
 }

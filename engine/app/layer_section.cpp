@@ -5,9 +5,9 @@
 
 #include <algorithm>
 
-#include "engine/app/layers.h"
 #include "engine/app/panel_widgets.h"
 #include "engine/base/error.h"
+#include "engine/scene/layers.h"
 
 namespace quadgraph {
 namespace {

@@ -29,6 +29,28 @@ void draw_deformer(Scene& scene, const char* label, DeformerKind kind) {
   if (std::abs(static_cast<double>(value) - neutral) < (turns ? 0.5 : 0.005)) list.erase(found);
 }
 
+// Where the body that is chosen has been put.
+void draw_placement(State& state) {
+  if (state.body.empty()) return;
+  const auto found = state.scene.placements.find(state.body);
+  BodyPose pose = found == state.scene.placements.end() ? BodyPose() : found->second;
+  glm::vec3 position(pose.position), rotation(pose.rotation);
+  ImGui::TextDisabled("%s", state.body.c_str());
+  bool changed = false;
+  for (int k = 0; k < 3; ++k) {
+    const std::string axis(1, "XYZ"[k]);
+    changed |= slide(("Move " + axis).c_str(), position[k], -state.reach, state.reach, "%.1f mm");
+  }
+  for (int k = 0; k < 3; ++k) {
+    const std::string axis(1, "XYZ"[k]);
+    changed |= slide(("Turn " + axis).c_str(), rotation[k], -180, 180, "%.0f°");
+  }
+  if (!changed) return;
+  pose = {glm::dvec3(position), glm::dvec3(rotation)};
+  state.scene.placements[state.body] = pose;
+  if (pose == BodyPose()) state.scene.placements.erase(state.body);
+}
+
 // The sliders of a perspective view.
 void draw_perspective(View& view, const Sphere& bounds) {
   slide("Field of view", view.vertical_fov, 5, 90, "%.0f°");
@@ -58,8 +80,10 @@ void draw_file(State& state) {
   slide("Mesh size", state.longest_mm, 1, 1000, "longest side %.0f mm", true);
 }
 
-void draw_shape(State& state) {
+void draw_shape(State& state, const Measured& measured) {
   if (!section("Shape", false)) return;
+  if (const std::string& said = measured.solve.deformed; !said.empty()) ImGui::TextWrapped("%s", said.c_str());
+  draw_placement(state);
   draw_deformer(state.scene, "Twist", DeformerKind::twist);
   draw_deformer(state.scene, "Bend", DeformerKind::bend);
   draw_deformer(state.scene, "Taper", DeformerKind::taper);

@@ -6,10 +6,10 @@
 #include <algorithm>
 
 #include "engine/app/body_choice.h"
-#include "engine/app/material_look.h"
 #include "engine/app/panel_widgets.h"
 #include "engine/optics/material.h"
 #include "engine/render/picture/tone_map.h"
+#include "engine/scene/material_look.h"
 #include "engine/scene/volume.h"
 
 namespace quadgraph {

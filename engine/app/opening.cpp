@@ -7,11 +7,11 @@
 #include <csignal>
 
 #include "engine/app/environment_section.h"
-#include "engine/app/layers.h"
 #include "engine/app/panel_widgets.h"
 #include "engine/app/viewer.h"
 #include "engine/base/error.h"
 #include "engine/file/front.h"
+#include "engine/scene/layers.h"
 #include "engine/scene/scene_file.h"
 
 extern char** environ;
@@ -39,6 +39,7 @@ Scene opened(const std::filesystem::path& file, const Scene& before) {
   Scene scene = before;
   scene.body = file;
   scene.layers.clear();
+  scene.placements.clear();
   scene.deformation.clear();
   scene.cuts.clear();
   scene.render.show = {};

@@ -47,6 +47,7 @@ void draw_help(State& state, float unit) {
   ImGui::TextUnformatted(
       "Ctrl or Shift + drag rotates the selected light. With the brush (P) a left drag paints, with the knife (K) it "
       "cuts.");
+  ImGui::TextUnformatted("Of several bodies a click chooses the one that the material goes to, beside them all.");
   ImGui::Separator();
   const auto commands = all_commands();
   const std::size_t rows = (commands.size() + 1) / 2;
@@ -142,6 +143,17 @@ void draw_ring(const std::vector<glm::vec2>& ring, const glm::vec3& linear, floa
   draw(IM_COL32(0, 0, 0, 160), 4);
   draw(ImGui::GetColorU32(colour), 2.5f);
   draw(IM_COL32(255, 255, 255, 220), 1);
+}
+
+void draw_outline(const std::vector<Segment>& outline, float left, float unit) {
+  const auto draw = [&](ImU32 colour, float width) {
+    for (const Segment& segment : outline) {
+      ImGui::GetBackgroundDrawList()->AddLine(place_of(segment[0], left), place_of(segment[1], left), colour,
+                                              width * unit);
+    }
+  };
+  draw(IM_COL32(0, 0, 0, 120), 4);
+  draw(IM_COL32(255, 170, 80, 255), 2);
 }
 
 void draw_knife(const Knife& knife, float left, float unit) {

@@ -1,6 +1,7 @@
 // What lies over the picture: the keys, what the colours mean, and the last message.
 #pragma once
 
+#include "engine/app/outline.h"
 #include "engine/app/state.h"
 #include "engine/render/picture/legend.h"
 
@@ -27,6 +28,9 @@ void draw_question(State& state, float unit);
 
 // The edge of the brush, clip coordinates, around a spot of its colour.
 void draw_ring(const std::vector<glm::vec2>& ring, const glm::vec3& linear, float left, float unit);
+
+// The edge of the body that was chosen, over the picture.
+void draw_outline(const std::vector<Segment>& outline, float left, float unit);
 
 // The way of the knife over the picture, which begins at `left`.
 void draw_knife(const Knife& knife, float left, float unit);

@@ -57,7 +57,7 @@ void draw_sections(State& state, const PanelFacts& facts) {
   draw_environment(state, bounds);
   if (state.lab) draw_solver(state);
   if (state.scene.solve.method == Method::shortest_path) draw_cuts(state, bounds);
-  draw_shape(state);
+  draw_shape(state, facts.measured);
   draw_picture(state, facts.measured);
   draw_camera(state, bounds);
   if (state.lab) draw_passes(facts.measured.passes);

@@ -60,15 +60,6 @@ void tell(const char* name, const std::string& value) {
   ImGui::TextUnformatted(value.c_str());
 }
 
-std::string formatted(const char* format, ...) {
-  char text[256];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text, sizeof(text), format, arguments);
-  va_end(arguments);
-  return text;
-}
-
 std::string percent(double share) {
   const double value = 100 * share;
   if (value > 0 && value < 0.005) return "<0.01%";

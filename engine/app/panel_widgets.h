@@ -9,6 +9,7 @@
 
 #include "engine/base/names.h"
 #include "engine/base/range.h"
+#include "engine/base/text.h"
 
 namespace quadgraph {
 
@@ -46,9 +47,6 @@ bool button(const char* label, bool enabled = true, bool beside = true);
 
 // A dim name and a value after it.
 void tell(const char* name, const std::string& value);
-
-// The text that printf would print, at most 255 bytes.
-std::string formatted(const char* format, ...) __attribute__((format(printf, 1, 2)));
 
 // "12.3%", with as many digits as are worth reading.
 std::string percent(double share);

@@ -20,6 +20,15 @@ std::optional<Picked> Picker::nearest_to(const glm::vec3& at_rest) const {
   return quadgraph::nearest_to(graph_->display(), *vertices_, at_rest);
 }
 
+std::uint32_t Picker::body_of(const Picked& picked) const {
+  return graph_ == nullptr ? 0 : quadgraph::body_of(picked, *graph_);
+}
+
+std::vector<Segment> Picker::outline(std::uint32_t body, const Camera& camera, float aspect) const {
+  if (graph_ == nullptr) return {};
+  return outline_of(*graph_, *vertices_, body, camera, aspect);
+}
+
 glm::vec3 Picker::middle() const {
   if (graph_ == nullptr) return glm::vec3(0);
   const RestBox box = rest_box(graph_->display().vertices);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/app/outline.h"
 #include "engine/render/display/pick.h"
 #include "engine/scene/stage.h"
 
@@ -20,6 +21,12 @@ class Picker {
 
   // As the function nearest_to, of what was followed last.
   std::optional<Picked> nearest_to(const glm::vec3& at_rest) const;
+
+  // The number of the body that was picked, of those that the file names.
+  std::uint32_t body_of(const Picked& picked) const;
+
+  // As the function outline_of, of what was followed last.
+  std::vector<Segment> outline(std::uint32_t body, const Camera& camera, float aspect) const;
 
   // mm, the middle of the body's box at rest.
   glm::vec3 middle() const;

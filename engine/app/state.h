@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/app/brush.h"
 #include "engine/render/engine.h"
+#include "engine/scene/brush.h"
 #include "engine/scene/scene.h"
 
 namespace quadgraph {
@@ -52,6 +52,7 @@ struct State {
   std::vector<Method> methods;      // that the file's levels serve
   std::vector<std::string> bodies;  // in the file, by name; empty: one without a name
   std::string body;                 // of these, whose material the panel and the keys change; empty: all
+  float reach = 0;                  // mm, that the panel moves a body by at most: twice the radius of all at rest
   float front = 0;                  // of the body, degrees
   std::size_t light = 0;            // the selected one
   Brush brush;

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <utility>
 
-#include "engine/app/layers.h"
 #include "engine/app/modes.h"
 #include "engine/app/overlays.h"
 #include "engine/app/panel.h"
 #include "engine/scene/gestures.h"
+#include "engine/scene/layers.h"
 
 namespace quadgraph {
 namespace {
@@ -121,6 +121,7 @@ void Viewer::build_widgets(const std::vector<Event>& events) {
   draw_preview(state_.preview, left, interface_.unit());
   if (!state_.compares()) draw_convergence(measured_.convergence, left, interface_.unit());
   for (const auto& ring : brush_rings()) draw_ring(ring, state_.brush.look.colour, left, interface_.unit());
+  draw_outline(chosen_outline(), left, interface_.unit());
   draw_knife(state_.knife, left, interface_.unit());
   if (state_.compares()) draw_convergence("Before the last change", left, interface_.unit());
   if (state_.asks) draw_question(state_, interface_.unit());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <glm/vec2.hpp>
 #include <optional>
 
 #include "engine/app/commands.h"
@@ -70,6 +71,8 @@ class Viewer {
   void answer_question(int key);
   void handle_motion(const MotionEvent& event);
   void begin_or_end_drag(const ButtonEvent& event);
+  void begin_or_end_click(bool plain);
+  std::vector<Segment> chosen_outline();
   glm::vec2 pointer() const;
   std::optional<Touch> pointed_at() const;
   Camera seen_from() const;
@@ -128,7 +131,10 @@ class Viewer {
   bool leaving_ = false;  // the window closes, and nothing is asked any more
   Measured measured_;
   bool dragging_ = false;
-  bool painting_ = false;  // the drag is a stroke of the brush
+  bool painting_ = false;               // the drag is a stroke of the brush
+  std::optional<glm::dvec2> clicking_;  // where the pointer went down, pixels, and what has not gone on as a drag
+  std::string outlined_;                // the body that was chosen last, whose edge is shown until then
+  Clock::time_point outlined_until_;
   int drag_button_ = 0, drag_mods_ = 0;
   double pointer_x_ = 0, pointer_y_ = 0;  // pixels
   std::optional<Scene> shown_;            // empty before the first picture

@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstdarg>
 #include <cstdio>
 
 #include "engine/base/error.h"
@@ -72,6 +73,15 @@ std::string triple_text(const glm::vec3& value, char separator) {
 
 std::string rgb_text(const glm::vec3& value) {
   return value.x == value.y && value.y == value.z ? number_text(value.x) : triple_text(value, '/');
+}
+
+std::string formatted(const char* format, ...) {
+  char text[256];
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(text, sizeof(text), format, arguments);
+  va_end(arguments);
+  return text;
 }
 
 }  // namespace quadgraph

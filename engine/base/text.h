@@ -32,4 +32,7 @@ std::string percent_text(double share);
 std::string triple_text(const glm::vec3& value, char separator);
 std::string rgb_text(const glm::vec3& value);
 
+// The text that printf would print, at most 255 bytes.
+std::string formatted(const char* format, ...) __attribute__((format(printf, 1, 2)));
+
 }  // namespace quadgraph

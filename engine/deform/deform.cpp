@@ -10,6 +10,7 @@
 
 #include "engine/base/all_cores.h"
 #include "engine/base/error.h"
+#include "engine/deform/body_poses.h"
 #include "engine/deform/mean_value.h"
 #include "shaders/deform/deform.h"
 
@@ -19,6 +20,7 @@ namespace {
 constexpr double radians = std::numbers::pi / 180;
 
 static_assert(static_cast<std::uint32_t>(DeformerKind::displaced) == gpu::DEFORM_DISPLACED);
+static_assert(static_cast<std::uint32_t>(DeformerKind::placed) == gpu::DEFORM_PLACED);
 static_assert(static_cast<std::uint32_t>(DeformerKind::lattice) == gpu::DEFORM_LATTICE);
 static_assert(static_cast<std::uint32_t>(LatticeBasis::linear) == gpu::LATTICE_LINEAR);
 
@@ -117,6 +119,7 @@ gpu::DeformRecord deform_record(const Deformer& deformer, const RestBox& rest) {
       record.count = static_cast<std::uint32_t>(deformer.cage.size());
       break;
     case DeformerKind::displaced:
+    case DeformerKind::placed:
       break;
     default:
       set_bent_about_axis(deformer, rest, axis, centre, record);
@@ -127,6 +130,10 @@ gpu::DeformRecord deform_record(const Deformer& deformer, const RestBox& rest) {
 std::vector<glm::dvec3> control_displacements(const Deformer& deformer) {
   if (deformer.kind == DeformerKind::lattice) return deformer.displacements;
   std::vector<glm::dvec3> control;
+  for (const RigidMove& move : deformer.moves) {
+    const glm::dmat3 rows = glm::transpose(move.turn);
+    control.insert(control.end(), {rows[0], rows[1], rows[2], move.shift});
+  }
   if (deformer.kind != DeformerKind::cage) return control;
   for (std::size_t k = 0; k < deformer.cage.size(); ++k) control.push_back(deformer.moved[k] - deformer.cage[k]);
   return control;
@@ -140,6 +147,10 @@ std::vector<glm::vec3> shape_displacements(const Deformer& deformer, MeshNumber 
     for (std::size_t v = 0; v < count && weight != 0; ++v) sum[v] += weight * shapes[s][v];
   }
   return sum;
+}
+
+std::span<const std::uint32_t> bodies_of(const Deformer& deformer, MeshNumber mesh) {
+  return mesh ? deformer.bodies->levels.at(*mesh) : deformer.bodies->display;
 }
 
 void check_shapes(std::span<const Deformer> list, const QuadGraph& graph) {
@@ -177,6 +188,14 @@ std::vector<glm::dvec3> deformed(std::span<const Deformer> list, const RestBox& 
       control.assign(moved.begin(), moved.end());
     }
     record.control = reinterpret_cast<std::uintptr_t>(control.data());
+    if (deformer.kind == DeformerKind::placed) {
+      const auto body = bodies_of(deformer, mesh);
+      for (std::size_t v = 0; v < points.size(); ++v) {
+        const RigidMove& move = deformer.moves[body[v]];
+        points[v] = move.turn * points[v] + move.shift;
+      }
+      continue;
+    }
     for (std::uint32_t v = 0; v < points.size(); ++v) {
       points[v] = deformer.kind == DeformerKind::cage ? caged(deformer, glm::dvec3(vertices[v]), points[v])
                                                       : gpu::deformed_point(record, points[v], v);

@@ -20,11 +20,15 @@ using MeshNumber = std::optional<std::uint32_t>;
 // A deformer without what `control` and `weight` point at.
 gpu::DeformRecord deform_record(const Deformer& deformer, const RestBox& rest);
 
-// Displacements of the control points of a lattice or of the vertices of a cage, mm; empty for other kinds.
+// Displacements of the control points of a lattice or of the vertices of a cage, mm; of `placed` the rows of the
+// rotation and the shift of each body; empty for other kinds.
 std::vector<glm::dvec3> control_displacements(const Deformer& deformer);
 
 // Displacements of a `displaced` deformer that check_shapes has passed, mm for each of the mesh's `count` vertices.
 std::vector<glm::vec3> shape_displacements(const Deformer& deformer, MeshNumber mesh, std::size_t count);
+
+// The body of each vertex of a mesh, of a `placed` deformer.
+std::span<const std::uint32_t> bodies_of(const Deformer& deformer, MeshNumber mesh);
 
 // Throws InputError if a `displaced` deformer has shapes of another body.
 void check_shapes(std::span<const Deformer> list, const QuadGraph& graph);

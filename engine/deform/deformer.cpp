@@ -166,7 +166,7 @@ bool Deformer::operator==(const Deformer& other) const {
          factor == other.factor && scale == other.scale && translate == other.translate && size == other.size &&
          basis == other.basis && displacements == other.displacements && same_box(box, other.box) &&
          cage == other.cage && moved == other.moved && triangles == other.triangles && shapes == other.shapes &&
-         weights == other.weights;
+         weights == other.weights && moves == other.moves && bodies == other.bodies;
 }
 
 void check_deformer(const Deformer& deformer) {
@@ -184,6 +184,8 @@ void check_deformer(const Deformer& deformer) {
       return check_cage(deformer);
     case DeformerKind::displaced:
       return check_displaced(deformer);
+    case DeformerKind::placed:
+      return;  // rigid_moves has
   }
 }
 
@@ -205,7 +207,8 @@ std::string summary_of(std::span<const Deformer> list) {
     const bool scales = d.kind == DeformerKind::taper || d.kind == DeformerKind::stretch;
     if (turns) std::snprintf(amount, sizeof(amount), " %g degrees", d.degrees);
     if (scales) std::snprintf(amount, sizeof(amount), " x %g", d.factor);
-    text += (text.empty() ? "" : ", ") + std::string(name_of(d.kind)) + amount;
+    const std::string_view name = d.kind == DeformerKind::placed ? "bodies placed" : name_of(d.kind);
+    text += (text.empty() ? "" : ", ") + std::string(name) + amount;
   }
   return text;
 }
@@ -217,6 +220,16 @@ bool is_rigid(const Deformer& deformer) {
 std::span<const Deformer> without_rigid_end(std::span<const Deformer> list) {
   while (!list.empty() && is_rigid(list.back())) list = list.first(list.size() - 1);
   return list;
+}
+
+ShapeChange change_between(std::span<const Deformer> one, std::span<const Deformer> other) {
+  if (std::ranges::equal(without_rigid_end(one), without_rigid_end(other))) return ShapeChange::whole;
+  return only_moves(one) && only_moves(other) ? ShapeChange::bodies : ShapeChange::shape;
+}
+
+bool only_moves(std::span<const Deformer> list) {
+  const auto rest = without_rigid_end(list);
+  return rest.empty() || (rest.size() == 1 && rest.front().kind == DeformerKind::placed);
 }
 
 }  // namespace quadgraph

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
@@ -17,7 +18,8 @@
 
 namespace quadgraph {
 
-enum class DeformerKind { twist, bend, taper, stretch, transform, lattice, cage, displaced };
+// `placed` is not among the names: it is of bodies that move on their own (body_poses.h).
+enum class DeformerKind { twist, bend, taper, stretch, transform, lattice, cage, displaced, placed };
 
 template <>
 struct Names<DeformerKind> {
@@ -47,6 +49,16 @@ struct RestBox {
   glm::dvec3 low{0}, high{0};
 };
 RestBox rest_box(std::span<const glm::vec3> vertices);
+
+// What a body moves by: turn * p + shift.
+struct RigidMove {
+  glm::dmat3 turn{1};   // a rotation
+  glm::dvec3 shift{0};  // mm
+
+  bool operator==(const RigidMove&) const = default;
+};
+
+struct VertexBodies;
 
 // One step of a deformation, which is a list of them, applied in order. Members that a kind does not name are not used.
 struct Deformer {
@@ -81,6 +93,10 @@ struct Deformer {
   std::shared_ptr<const Shapes> shapes{};
   std::vector<double> weights{};
 
+  // placed: each body by its own motion, by its number.
+  std::vector<RigidMove> moves{};
+  std::shared_ptr<const VertexBodies> bodies{};
+
   bool operator==(const Deformer& other) const;
 };
 
@@ -99,5 +115,16 @@ bool is_rigid(const Deformer& deformer);
 
 // The first ones, without those at the end that only turn and move the whole.
 std::span<const Deformer> without_rigid_end(std::span<const Deformer> list);
+
+// What two lists make of a body differs by at most so much.
+enum class ShapeChange {
+  whole,   // a rigid motion of all
+  bodies,  // a rigid motion of each body
+  shape,   // any
+};
+ShapeChange change_between(std::span<const Deformer> one, std::span<const Deformer> other);
+
+// Whether a list moves every body as a rigid whole.
+bool only_moves(std::span<const Deformer> list);
 
 }  // namespace quadgraph

@@ -144,31 +144,6 @@ PresentScene Engine::present_scene() const {
   return {.file = self.source, .material = self.material, .lights = self.lights, .as_baked = at_rest && !self.edited};
 }
 
-void Engine::set_deformation(std::span<const Deformer> list) {
-  const auto turn = implementation_->in_use.take();
-  auto& self = *implementation_;
-  for (const Deformer& deformer : list) check_deformer(deformer);
-  check_shapes(list, self.graph);
-  const auto also = [&](Workspace& work) { self.motion.record(work, list, self.mesh); };
-  if (!self.simulation) {
-    if (!self.motion_work) self.motion_work.emplace(self.device, self.mesh.vertex_count);
-    self.motion_work->recorder.clear();
-    also(*self.motion_work);
-    self.motion_work->recorder.submit();
-  } else if (!self.simulation->set_deformation(list, self.motion.rest_box(), also)) {
-    return;
-  }
-  self.moved = !list.empty();
-  self.bounds = list.empty() ? Implementation::bounds_of(self.graph) : self.moved_bounds();
-  self.stale();
-  self.shadows.forget();
-  self.deformed = true;
-  self.deformation = summary_of(list);
-  self.paths.set_moved();
-  if (self.ground) self.ground->invalidate();
-  self.report.reset();
-}
-
 void Engine::set_irradiance(std::uint32_t level, std::span<const glm::vec3> q,
                             const std::optional<glm::vec3>& direction) {
   const auto turn = implementation_->in_use.take();
@@ -225,6 +200,7 @@ SolveReport Engine::solve(const SolveOptions& options, const std::function<void(
   }
   const bool of_one_text = !by_path && !self.body_roughness;
   if (of_one_text) self.report->size_warning = size_warning(self.material, self.of_text, self.simulation->chord());
+  self.add_overlaps(*self.report);
   judge(*self.report, self.lights, self.lights_inside());
   if (self.ground) self.ground->relight();
   self.options = options;

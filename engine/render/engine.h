@@ -15,6 +15,7 @@
 
 #include "engine/base/names.h"
 #include "engine/base/range.h"
+#include "engine/deform/body_poses.h"
 #include "engine/deform/cut.h"
 #include "engine/deform/deformer.h"
 #include "engine/device/device.h"
@@ -152,6 +153,14 @@ class Engine {
   // Light given by set_irradiance stays. There is no solution until the next solve. Throws InputError, and moves
   // nothing, as check_deformer does, or for shapes of another body.
   void set_deformation(std::span<const Deformer> list);
+
+  // Puts bodies of a file that names several elsewhere, each as a rigid whole, before the deformation moves them all;
+  // those without a pose lie as in the file. Where two come to overlap, solves say so (SolveReport::deformed). Else as
+  // set_deformation. Throws InputError as rigid_moves.
+  void set_placements(const BodyPoses& poses);
+
+  // Both at once.
+  void set_shape(std::span<const Deformer> list, const BodyPoses& poses);
 
   // Irradiance given instead of computed from lights, as Simulation::set_irradiance; wanted for every level, and kept
   // until set_lights.

@@ -4,6 +4,7 @@
 #include "engine/base/error.h"
 #include "engine/devices/open_device.h"
 #include "engine/optics/material.h"
+#include "engine/reference/tet_locator.h"
 #include "engine/render/body_roughness.h"
 #include "engine/render/display/display_faces.h"
 #include "engine/render/display/display_motion.h"
@@ -83,12 +84,17 @@ struct Engine::Implementation {
   std::optional<RadianceProbe> probe;        // made at first use
   device::Buffer triangle_face;              // display_faces.h, made at first use
   std::vector<PassStats> deformation_passes, irradiance_passes, light_passes, gather_passes, render_passes;
-  bool deformed = false;                     // since the last solve
-  std::string deformation;                   // in words
-  std::optional<Ground> ground;              // made at first use
-  std::optional<Surroundings> surroundings;  // made at first use
-  std::optional<Legend> legend;              // of the last picture
-  FalseColours false_colours;                // the same
+  bool deformed = false;        // since the last solve
+  std::string deformation;      // in words
+  std::vector<Deformer> steps;  // of the deformation, without the poses of bodies
+  BodyPoses poses;
+  std::shared_ptr<const VertexBodies> vertices_of_bodies;  // made at first use
+  std::optional<TetLocator> locator;                       // the same, of level 0 at rest
+  std::optional<std::string> overlaps;                     // what is said of overlaps of the present poses, once asked
+  std::optional<Ground> ground;                            // made at first use
+  std::optional<Surroundings> surroundings;                // made at first use
+  std::optional<Legend> legend;                            // of the last picture
+  FalseColours false_colours;                              // the same
   PathMethod paths;
   std::optional<Workspace> motion_work;      // of a surface without levels, made at first use
   std::vector<gpu::PathTool> cut_tools;      // what is cut away
@@ -108,6 +114,11 @@ struct Engine::Implementation {
     sphere.outline = std::make_shared<const std::vector<glm::vec3>>(device::download<glm::vec3>(device, mesh.vertices));
     return sphere;
   }
+
+  // engine_shape.cpp
+  std::vector<Deformer> checked(std::span<const Deformer> list, const BodyPoses& wanted);
+  void set_shape(std::span<const Deformer> list, const BodyPoses& wanted);
+  void add_overlaps(SolveReport& of);
 
   // Throws InputError where there are none.
   Simulation& levels() const {
@@ -310,80 +321,15 @@ struct Engine::Implementation {
     return {least, std::min(std::sqrt(most * most + map->spread()), 1.0f)};
   }
 
+  // engine_picture.cpp
   // The body as it looks; how its radiance left, never automatic.
-  Radiance draw_surface(const Camera& camera, const RenderOptions& render, std::uint32_t frame) {
-    std::optional<PlacedRoughness> placed;
-    if (render.roughness_map) placed.emplace(maps.placed(*render.roughness_map));
-    const BodyRoughness* own = own_roughness(render);
-    if (auto by_body = own ? own->placed() : std::nullopt) placed.emplace(*by_body);
-    const PlacedRoughness* there = placed ? &*placed : nullptr;
-    std::optional<PlacedNormals> leaning;
-    if (const auto& map = normals(render)) leaning.emplace(maps.placed(*map));
-    const PlacedNormals* normals = leaning ? &*leaning : nullptr;
-    if (report->path) {
-      if (render.radiance == Radiance::gathered || render.radiance == Radiance::single) {
-        throw InputError("radiance: with shortest-path nothing is gathered, allowed are lambertian, auto");
-      }
-      if (shadows_stale) cast_shadows();
-      add_all(rasteriser.run(PathInput{.mesh = mesh,
-                                       .field = paths.field(),
-                                       .shadows = shadows,
-                                       .eta = eta[0],
-                                       .roughness = roughness(render),
-                                       .placed_roughness = there,
-                                       .placed_normals = normals,
-                                       .mirrored = mirrored(render)},
-                             camera, render.width, render.height));
-      return Radiance::lambertian;
-    }
-    std::optional<GatherView> view_rays;
-    Radiance leaves = render.radiance;
-    if (leaves == Radiance::automatic) {
-      leaves = simulation->can_gather() ? Radiance::gathered : Radiance::lambertian;
-    }
-    if (leaves != Radiance::lambertian) {
-      const GatherField& field = gather(leaves == Radiance::single ? Gather::single : Gather::scaled);
-      view_rays.emplace(field, triangle_face, leaves == Radiance::gathered ? simulation->surface_share() : nullptr);
-    }
-    add_all(rasteriser.run(RasterInput{.mesh = mesh,
-                                       .finest = simulation->level(0),
-                                       .vertex_exitance = simulation->vertex_exitance(),
-                                       .vertex_unscattered = simulation->vertex_unscattered(),
-                                       .shadows = shadows,
-                                       .roughness = roughness(render),
-                                       .placed_roughness = there,
-                                       .placed_normals = normals,
-                                       .mirrored = mirrored(render),
-                                       .gather = view_rays ? &*view_rays : nullptr,
-                                       .transmission_roughness = render.transmission_roughness,
-                                       .frame = frame,
-                                       .single_frame = !averaged},
-                           camera, render.width, render.height));
-    return leaves;
-  }
+  Radiance draw_surface(const Camera& camera, const RenderOptions& render, std::uint32_t frame);
+  void draw_picture(const View& from, const Camera& camera, const RenderOptions& render, std::uint32_t frame);
 
   // None of shortest paths, which know no faces.
   std::optional<GroundSource> ground_source() const {
     if (report->path) return std::nullopt;
     return GroundSource{graph.levels()[0], simulation->level(0), simulation->exitance()};
-  }
-
-  void draw_picture(const View& from, const Camera& camera, const RenderOptions& render, std::uint32_t frame) {
-    legend.reset();
-    const glm::vec2 blurred = mirrored(render);
-    images.set_roughness(blurred.x, blurred.y);
-    radiance = draw_surface(camera, render, frame);
-    if (render.ground) {
-      if (!ground) ground.emplace(device);
-      add_all(ground->run(mesh, bounds, from, camera, rasteriser.picture(), ground_source()));
-    }
-    if (render.surroundings) {
-      if (!surroundings) surroundings.emplace(device);
-      PictureBuffers& picture = rasteriser.picture();
-      PassStats pass;
-      picture.has_surroundings = surroundings->run(lights, camera, picture, pass);
-      if (picture.has_surroundings) add(render_passes, pass);
-    }
   }
 
   void display_room() {

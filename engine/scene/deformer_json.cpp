@@ -163,6 +163,8 @@ Deformer deformer_from(const JsonField& field) {
     case displaced:
       displaced_from(field, deformer);
       break;
+    case placed:
+      break;  // has no name that a file could say
   }
   field.within([&] { check_deformer(deformer); });
   return deformer;

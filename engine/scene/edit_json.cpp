@@ -117,7 +117,7 @@ std::vector<EditLayer> layers_from(const JsonField& field) {
 }
 
 Json layers_json(const std::vector<EditLayer>& layers) {
-  const bool unnamed = layers.size() == 1 && layers[0].name == layer_name(1);
+  const bool unnamed = layers.size() == 1 && layers[0].name == layer_name(1) && !layers[0].edits.empty();
   if (unnamed && layers[0].visible && layers[0].opacity == 1) return layer_json(layers[0])["edits"];
   Json json = Json::array();
   for (const EditLayer& layer : layers) json.push_back(layer_json(layer));

@@ -19,7 +19,7 @@ Json to_json(const Edit& edit);
 // wrong.
 std::vector<EditLayer> layers_from(const JsonField& field);
 
-// What layers_from reads: one layer that is as if its edits had none is these edits.
+// What layers_from reads: one layer that is as if its edits had none is these edits, unless it is empty.
 Json layers_json(const std::vector<EditLayer>& layers);
 
 }  // namespace quadgraph

@@ -72,6 +72,34 @@ std::map<std::string, std::string> materials_from(const JsonField& field) {
   return materials;
 }
 
+glm::dvec3 numbers_from(const JsonField& field) {
+  const auto parts = field.items();
+  if (parts.size() != 3) field.refuse("three numbers");
+  return {parts[0].number(), parts[1].number(), parts[2].number()};
+}
+
+BodyPoses placements_from(const JsonField& field) {
+  BodyPoses poses;
+  for (const JsonField& pose : field.members("an object of placements by the names of bodies")) {
+    const std::string name = pose.path().substr(field.path().size() + 1);
+    if (!is_body_name(name)) pose.refuse("the name of a body as a key");
+    pose.allow({"position", "rotation"});
+    if (const auto position = pose.find("position")) poses[name].position = numbers_from(*position);
+    if (const auto rotation = pose.find("rotation")) poses[name].rotation = numbers_from(*rotation);
+    pose.within([&] { check_pose(poses[name]); });
+  }
+  return poses;
+}
+
+Json placements_json(const BodyPoses& poses) {
+  Json json = Json::object();
+  for (const auto& [name, pose] : poses) {
+    const glm::dvec3 &p = pose.position, &r = pose.rotation;
+    json[name] = {{"position", {p.x, p.y, p.z}}, {"rotation", {r.x, r.y, r.z}}};
+  }
+  return json;
+}
+
 OptionValue value_from(const SceneOption& option, const JsonField& field) {
   constexpr double all = std::numeric_limits<float>::max();
   switch (option.kind) {
@@ -240,11 +268,17 @@ Json picture_json(const Scene& scene) {
 
 }  // namespace
 
+const std::string& said_material(const Scene& scene, const std::string& body) {
+  const auto own = scene.materials.find(body);
+  return own == scene.materials.end() ? scene.material : own->second;
+}
+
 Scene scene_from(const JsonField& document) {
   Scene scene;
   scene.body = document.at("body").text();
   if (const auto material = document.find("material")) scene.material = material_from(*material);
   if (const auto materials = document.find("materials")) scene.materials = materials_from(*materials);
+  if (const auto placements = document.find("placements")) scene.placements = placements_from(*placements);
   if (const auto edits = document.find("edits")) scene.layers = layers_from(*edits);
   if (const auto lights = document.find("lights")) {
     const std::vector<JsonField> items = lights->items();
@@ -270,6 +304,7 @@ Json to_json(const Scene& scene) {
   for (const Light& light : scene.lights) lights.push_back(to_json(light));
   Json json = {{"quadgraph_scene", 1}, {"body", scene.body.string()}, {"material", scene.material}};
   if (!scene.materials.empty()) json["materials"] = scene.materials;
+  if (!scene.placements.empty()) json["placements"] = placements_json(scene.placements);
   json["edits"] = layers_json(scene.layers);
   json["lights"] = std::move(lights);
   json["deformation"] = std::move(deformation);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/deform/body_poses.h"
 #include "engine/deform/cut.h"
 #include "engine/deform/deformer.h"
 #include "engine/optics/edit_layer.h"
@@ -23,7 +24,8 @@ struct Scene {
   std::map<std::string, std::string> materials{};  // the same of bodies by their names; others have `material`
   std::vector<EditLayer> layers{};                 // of edits of the material, one after the other
   std::vector<Light> lights{};
-  std::vector<Deformer> deformation{};  // one after the other
+  BodyPoses placements{};               // of bodies by their names; others lie as in the file
+  std::vector<Deformer> deformation{};  // one after the other, of all bodies where they have been put
   std::vector<BodyCut> cuts{};          // away from the body as it is shown; only with shortest-path
   View view{};
   SolveOptions solve{.correction = true};
@@ -32,6 +34,9 @@ struct Scene {
 
   bool operator==(const Scene&) const = default;
 };
+
+// The text of the material of a body by its name; without one, or of one that has none of its own, that of all.
+const std::string& said_material(const Scene& scene, const std::string& body);
 
 // Reads the members of a scene file that say what is shown, and leaves others alone. Throws InputError with the path of
 // what is wrong.

@@ -139,8 +139,8 @@ void SceneFile::check() {
         "one file, 'quadgraph bake SCENE.json -o NAME.qgraph', and name it as \"body\", and what they are made of as "
         "\"materials\"");
   }
-  field.allow({"quadgraph_scene", "body", "material", "materials", "edits", "lights", "deformation", "cuts", "camera",
-               "solver", "picture", "frames", "frames_per_second", "tracks"});
+  field.allow({"quadgraph_scene", "body", "material", "materials", "placements", "edits", "lights", "deformation",
+               "cuts", "camera", "solver", "picture", "frames", "frames_per_second", "tracks"});
   if (const auto version = field.find("quadgraph_scene")) version->whole(format_version, format_version);
   tracks_.clear();
   front_ = 0;

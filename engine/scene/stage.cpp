@@ -30,9 +30,10 @@ void Stage::show(const Scene& scene) {
     engine_->set_lights(scene.lights);
     scene_.lights = scene.lights;
   }
-  if (scene.deformation != scene_.deformation) {
-    engine_->set_deformation(scene.deformation);
+  if (scene.deformation != scene_.deformation || scene.placements != scene_.placements) {
+    engine_->set_shape(scene.deformation, scene.placements);
     scene_.deformation = scene.deformation;
+    scene_.placements = scene.placements;
   }
   if (scene.cuts != scene_.cuts) {
     engine_->set_cuts(scene.cuts);

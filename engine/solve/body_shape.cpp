@@ -45,12 +45,12 @@ bool BodyShape::is(std::span<const Deformer> list) const {
   return !set_ && std::equal(list.begin(), list.end(), deformed_.list().begin(), deformed_.list().end());
 }
 
-bool BodyShape::record(Workspace& work, std::span<const Deformer> list, const RestBox& box,
-                       std::vector<LevelBuffers>& levels) {
-  const bool same = deformed_.same_shape(list);
+ShapeChange BodyShape::record(Workspace& work, std::span<const Deformer> list, const RestBox& box,
+                              std::vector<LevelBuffers>& levels) {
+  const ShapeChange change = change_between(deformed_.list(), list);
   deformed_.record(work, list, box, levels);
   present_.reset();
-  return same;
+  return change;
 }
 
 ShapeState BodyShape::measured(std::uint32_t number) {

@@ -41,8 +41,9 @@ class BodyShape {
   // Whether the body already is as this list makes it.
   bool is(std::span<const Deformer> list) const;
 
-  // Records what a list of deformers does to all levels; whether the shape stays the same but for a rigid motion.
-  bool record(Workspace& work, std::span<const Deformer> list, const RestBox& box, std::vector<LevelBuffers>& levels);
+  // Records what a list of deformers does to all levels, and returns how much of the shape that changes.
+  ShapeChange record(Workspace& work, std::span<const Deformer> list, const RestBox& box,
+                     std::vector<LevelBuffers>& levels);
 
   // What came of level `number` of a record that has run; its samples are taken out of it.
   ShapeState measured(std::uint32_t number);

@@ -62,11 +62,6 @@ DeformedLevels::DeformedLevels(const std::vector<Level>& rest) : rest_(rest), me
   }
 }
 
-bool DeformedLevels::same_shape(std::span<const Deformer> list) const {
-  const auto present = without_rigid_end(list_), wanted = without_rigid_end(list);
-  return std::equal(present.begin(), present.end(), wanted.begin(), wanted.end());
-}
-
 void DeformedLevels::make_room(device::Device& device) {
   for (std::size_t i = 0; i < rest_.size(); ++i) {
     Measured& measured = measured_[i];
@@ -87,7 +82,7 @@ void DeformedLevels::record(Workspace& work, std::span<const Deformer> list, con
   make_room(work.recorder.device());
   const double extent = glm::length(box.high - box.low);
   const auto least = static_cast<float>(least_volume * extent * extent * extent);
-  const bool moves_only = without_rigid_end(list).empty();
+  const bool moves_only = only_moves(list);
   for (std::uint32_t i = 0; i < levels.size(); ++i) {
     meshes_[i].record(work, list, box, levels[i].vertices);
     record_nodes(work, i, levels[i]);

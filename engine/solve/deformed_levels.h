@@ -35,9 +35,6 @@ class DeformedLevels {
 
   const std::vector<Deformer>& list() const { return list_; }  // empty: at rest
 
-  // Whether the shapes under the present list and another differ by a rigid motion of the whole at most.
-  bool same_shape(std::span<const Deformer> list) const;
-
   // Vertices and nodes of all levels, and their states. `list` has been checked.
   void record(Workspace& work, std::span<const Deformer> list, const RestBox& box, std::vector<LevelBuffers>& levels);
 

@@ -8,7 +8,12 @@ namespace {
 constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
 
 bool has_control(DeformerKind kind) {
-  return kind == DeformerKind::lattice || kind == DeformerKind::cage || kind == DeformerKind::displaced;
+  using enum DeformerKind;
+  return kind == lattice || kind == cage || kind == displaced || kind == placed;
+}
+
+bool has_weights(DeformerKind kind) {
+  return kind == DeformerKind::cage || kind == DeformerKind::placed;
 }
 
 bool same_cage(const Deformer& a, const Deformer& b) {
@@ -37,6 +42,11 @@ DeformedMesh::Data& DeformedMesh::data_of(device::Device& device, std::size_t pl
   if (deformer.kind == DeformerKind::cage && !same_cage(data.of, deformer)) {
     data.weight = device::upload<float>(device, cage_weights(deformer, rest_), purpose_ + "/weights of a cage");
   }
+  if (deformer.kind == DeformerKind::placed && data.of.bodies != deformer.bodies) {
+    const auto bodies = bodies_of(deformer, number_);
+    const std::vector<float> numbers(bodies.begin(), bodies.end());
+    data.weight = device::upload<float>(device, numbers, purpose_ + "/bodies of vertices");
+  }
   upload_control(device, deformer, data);
   data.of = deformer;
   return data;
@@ -58,7 +68,7 @@ void DeformedMesh::record(Workspace& work, std::span<const Deformer> list, const
       push.record.control = data_[k].control.address();
       bytes += data_[k].control.size();
     }
-    if (list[k].kind == DeformerKind::cage) {
+    if (has_weights(list[k].kind)) {
       push.record.weight = data_[k].weight.address();
       bytes += data_[k].weight.size();
     }

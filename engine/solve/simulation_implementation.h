@@ -174,10 +174,10 @@ struct Simulation::Implementation {
   }
 
   void move_on_device(std::span<const Deformer> list, const RestBox& box) {
-    if (shape.record(work, list, box, levels)) {
-      exchange.turned();
-      return forget_place();
-    }
+    const ShapeChange change = shape.record(work, list, box, levels);
+    if (change == ShapeChange::whole) exchange.turned();
+    for (std::uint32_t i = 0; i < levels.size() && change == ShapeChange::bodies; ++i) exchange.moved(i);
+    if (change != ShapeChange::shape) return forget_place();  // tets and matrices stay
     work.recorder.submit();
     for (std::uint32_t i = 0; i < levels.size(); ++i) {
       const ShapeState state = shape.measured(i);

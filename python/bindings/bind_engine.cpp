@@ -205,6 +205,14 @@ void bind_scene_setters(py::class_<Engine>& bound) {
       .def("set_lights", &set_lights, py::arg("lights"),
            "Texts as --light takes them (engine/render/light/lights.h); replaces all lights.")
       .def(
+          "set_placements",
+          [](Engine& engine, const std::string& json) {
+            const BodyPoses poses = members(json).placements;
+            const py::gil_scoped_release release;
+            engine.set_placements(poses);
+          },
+          py::arg("json"), "The member `placements` of a scene. Raises InputError, and moves nothing.")
+      .def(
           "set_deformation",
           [](Engine& engine, const py::object& list) {
             const std::vector<Deformer> deformers = deformation_from(list);

@@ -23,6 +23,14 @@ Scene members(const std::string& text) {
   return scene_from(JsonField(json, ""));
 }
 
+View view_of(const Engine& engine, const std::string& json, const std::string& text) {
+  View view = members(json).view;
+  if (!parse_json(json).contains("/camera/azimuth"_json_pointer)) {
+    view.azimuth = first_view(engine.graph().front(), view.up).azimuth;
+  }
+  return text.empty() ? view : parse_view(text, view);
+}
+
 namespace {
 
 std::string material_json(const std::string& text) {
@@ -41,15 +49,6 @@ std::string material_json(const std::string& text) {
   }
   if (const auto roughness = stated_roughness(text)) json["roughness"] = real_json(*roughness);
   return json.dump();
-}
-
-// The camera that `text` says, or that of the members; without an azimuth the body's front.
-View view_of(const Engine& engine, const std::string& json, const std::string& text) {
-  View view = members(json).view;
-  if (!parse_json(json).contains("/camera/azimuth"_json_pointer)) {
-    view.azimuth = first_view(engine.graph().front(), view.up).azimuth;
-  }
-  return text.empty() ? view : parse_view(text, view);
 }
 
 Picture render_members(Engine& engine, const std::string& json, const std::string& text, const py::object& told) {

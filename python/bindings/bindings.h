@@ -34,6 +34,7 @@ void bind_deformation(pybind11::module_& module);
 void bind_options(pybind11::module_& module);
 void bind_fluence(pybind11::module_& module);
 void bind_values(pybind11::module_& module);
+void bind_hand(pybind11::module_& module);
 void bind_volume(pybind11::module_& module);
 void bind_surface(pybind11::module_& module);
 void bind_derivative(pybind11::module_& module);
@@ -92,6 +93,9 @@ std::optional<glm::vec3> as_vector(const std::optional<std::array<float, 3>>& co
 
 // The scene of no body that has the members of this JSON text. Throws InputError.
 Scene members(const std::string& json);
+
+// The camera that `text` says, or that of the members; without an azimuth the body's front. Throws InputError.
+View view_of(const Engine& engine, const std::string& json, const std::string& text);
 
 pybind11::object error_dict(const std::optional<ErrorEstimate>& estimate);  // None: not known
 

@@ -247,6 +247,7 @@ PYBIND11_MODULE(_core, module) {
   quadgraph::python::bind_derivative(module);
   quadgraph::python::bind_scene(module);
   quadgraph::python::bind_values(module);
+  quadgraph::python::bind_hand(module);
   quadgraph::python::bind_volume(module);
   quadgraph::python::bind_surface(module);
   quadgraph::python::bind_devices(module);

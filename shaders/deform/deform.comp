@@ -21,9 +21,21 @@ vec3 caged(vec3 p, uint vertex) {
   return p;
 }
 
+// Each body by its own rows.
+vec3 placed(vec3 p, uint vertex) {
+  uint first = 4u * uint(push.record.weight.at[vertex]);
+  vec3 a = push.record.control.at[first], b = push.record.control.at[first + 1u], c = push.record.control.at[first + 2u];
+  return vec3(dot(a, p), dot(b, p), dot(c, p)) + push.record.control.at[first + 3u];
+}
+
+vec3 moved(vec3 p, uint vertex) {
+  if (push.record.kind == DEFORM_CAGE) return caged(p, vertex);
+  if (push.record.kind == DEFORM_PLACED) return placed(p, vertex);
+  return deformed_point(push.record, p, vertex);
+}
+
 void main() {
   uint v = gl_GlobalInvocationID.x;
   if (v >= push.count) return;
-  vec3 p = push.source.at[v];
-  push.target.at[v] = push.record.kind == DEFORM_CAGE ? caged(p, v) : deformed_point(push.record, p, v);
+  push.target.at[v] = moved(push.source.at[v], v);
 }

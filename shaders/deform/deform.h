@@ -113,7 +113,7 @@ QG_INLINE real3 in_lattice(DeformRecord r, real3 p) {
   return p + sum;
 }
 
-// `vertex`: its number in the mesh. Cages are left to the caller.
+// `vertex`: its number in the mesh. Cages and bodies are left to the caller.
 QG_INLINE real3 deformed_point(DeformRecord r, real3 p, uint vertex) {
   if (r.kind == DEFORM_TWIST) return twisted(r, p);
   if (r.kind == DEFORM_BEND) return bent(r, p);

@@ -16,6 +16,7 @@ const uint DEFORM_TRANSFORM = 4u;
 const uint DEFORM_LATTICE = 5u;
 const uint DEFORM_CAGE = 6u;
 const uint DEFORM_DISPLACED = 7u;
+const uint DEFORM_PLACED = 8u;
 
 // Control points of a lattice along a side at most.
 #define LATTICE_MOST 16
@@ -24,9 +25,10 @@ const uint LATTICE_LINEAR = 1u;
 
 // A deformer (engine/deform/deformer.h) as deform.h takes it. In C++ `control` is the address of dvec3 in memory.
 struct DeformRecord {
-  // Lattice: displacement of the control points, x fastest; cage: of its vertices; displaced: of every vertex, mm.
+  // Lattice: displacement of the control points, x fastest; cage: of its vertices; displaced: of every vertex, mm;
+  // placed: three rows and what is added, mm, of each body.
   QG_REF(Vec3s) control;
-  QG_REF(Floats) weight;  // cage: of control k at vertex v, at k * vertices + v
+  QG_REF(Floats) weight;  // cage: of control k at vertex v, at k * vertices + v; placed: the body of vertex v
   vec3 a;                 // axis, unit; transform: first row; lattice: its low corner, mm
   vec3 b;                 // bend: unit, across the axis; transform: second row; lattice: its size, mm
   vec3 c;                 // a point of the axis, mm; transform: third row

@@ -77,11 +77,27 @@ glm::dvec3 nearest_share(std::span<const glm::vec3> vertices, const glm::uvec3& 
   return best;
 }
 
+std::uint32_t number_of(const DisplayMesh& mesh, const glm::uvec3& triangle) {
+  return static_cast<std::uint32_t>(&triangle - mesh.triangles.data());
+}
+
 }  // namespace
+
+// The bake ties every vertex to a face of its own body.
+std::uint32_t body_of(const Picked& picked, const QuadGraph& graph) {
+  if (graph.bodies().empty() || graph.levels().empty()) return 0;
+  const DisplayMesh& mesh = graph.display();
+  return graph.levels()[0].body_of_face(mesh.face[mesh.triangles[picked.triangle].x]);
+}
+
+const std::string& body_name(const Picked& picked, const QuadGraph& graph) {
+  static const std::string none;
+  return graph.bodies().empty() ? none : graph.bodies()[body_of(picked, graph)];
+}
 
 std::optional<Picked> nearest_to(const DisplayMesh& mesh, std::span<const glm::vec3> vertices,
                                  const glm::vec3& at_rest) {
-  std::optional<glm::uvec3> triangle;
+  const glm::uvec3* triangle = nullptr;
   glm::dvec3 share(0);
   double least = std::numeric_limits<double>::max();
   for (const glm::uvec3& t : mesh.triangles) {
@@ -91,12 +107,13 @@ std::optional<Picked> nearest_to(const DisplayMesh& mesh, std::span<const glm::v
     if (away >= least || is_flat(mesh.vertices, t) || is_flat(vertices, t)) continue;
     least = away;
     share = there;
-    triangle = t;
+    triangle = &t;
   }
-  if (!triangle) return std::nullopt;
+  if (triangle == nullptr) return std::nullopt;
   const glm::dmat3 now = frame_of(vertices, *triangle);
   return Picked{glm::vec3(between(vertices, *triangle, share)), glm::vec3(between(mesh.vertices, *triangle, share)),
-                glm::vec3(glm::normalize(now[2])), glm::mat3(frame_of(mesh.vertices, *triangle) * glm::inverse(now))};
+                glm::vec3(glm::normalize(now[2])), glm::mat3(frame_of(mesh.vertices, *triangle) * glm::inverse(now)),
+                number_of(mesh, *triangle)};
 }
 
 std::optional<Picked> pick(const DisplayMesh& mesh, std::span<const glm::vec3> vertices, const Camera& camera,
@@ -105,7 +122,7 @@ std::optional<Picked> pick(const DisplayMesh& mesh, std::span<const glm::vec3> v
   const glm::dvec3 &origin = ray.from, &direction = ray.along;
   double nearest = std::numeric_limits<double>::max();
   std::optional<Picked> found;
-  glm::uvec3 triangle(0);
+  const glm::uvec3* triangle = nullptr;
   for (const glm::uvec3& t : mesh.triangles) {
     // Moeller and Trumbore 1997.
     const glm::dvec3 a(vertices[t.x]), ab = glm::dvec3(vertices[t.y]) - a, ac = glm::dvec3(vertices[t.z]) - a;
@@ -119,15 +136,16 @@ std::optional<Picked> pick(const DisplayMesh& mesh, std::span<const glm::vec3> v
     const glm::vec3 position(origin + distance * direction);
     if (cut_away(tools, position)) continue;
     nearest = distance;
-    triangle = t;
+    triangle = &t;
     const glm::vec3 share(1 - u - v, u, v);
     found = Picked{position, share.x * mesh.vertices[t.x] + share.y * mesh.vertices[t.y] + share.z * mesh.vertices[t.z],
                    glm::vec3(glm::normalize(glm::cross(ab, ac)))};
   }
   if (!found) return found;
-  found->to_rest = glm::mat3(frame_of(mesh.vertices, triangle) * glm::inverse(frame_of(vertices, triangle)));
+  found->to_rest = glm::mat3(frame_of(mesh.vertices, *triangle) * glm::inverse(frame_of(vertices, *triangle)));
+  found->triangle = number_of(mesh, *triangle);
   const double back = std::min(nearest, double{camera.reach});
-  move_to_cut(*found, mesh, vertices, triangle, glm::dvec3(found->position) - back * direction, tools);
+  move_to_cut(*found, mesh, vertices, *triangle, glm::dvec3(found->position) - back * direction, tools);
   return found;
 }
 

@@ -56,10 +56,10 @@ struct RasterInput {
   const PlacedRoughness* placed_roughness = nullptr;  // null: the same everywhere
   const PlacedNormals* placed_normals = nullptr;      // null: those of the mesh
   glm::vec2 mirrored{};  // alphas of the two pictures of environments, unless roughness is the same everywhere
-  const GatherView* gather = nullptr;                 // null: radiance as of a diffuser
-  std::optional<float> transmission_roughness{};      // the same of light that comes through; empty: the surface's
-  std::uint32_t frame = 0;                            // of those that make the picture
-  bool single_frame = true;                           // there is no other
+  const GatherView* gather = nullptr;             // null: radiance as of a diffuser
+  std::optional<float> transmission_roughness{};  // the same of light that comes through; empty: the surface's
+  std::uint32_t frame = 0;                        // of those that make the picture
+  bool single_frame = true;                       // there is no other
 };
 
 // For radiance from the cells of the shortest-path method.

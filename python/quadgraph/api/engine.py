@@ -22,8 +22,9 @@ from quadgraph.api.materials import Material, VolumeMaterial
 from quadgraph.api.mesh_fields import MeshFields, Part, of_body, of_surface
 from quadgraph.api.options import MOTION, Camera, MotionOptions, PictureOptions
 from quadgraph.api.picture import Picture
+from quadgraph.api.places import as_points, triple
 from quadgraph.api.solution import Solution
-from quadgraph.api.values import Floats, numbers, plain_members, single
+from quadgraph.api.values import Floats, plain_members
 from quadgraph.base.errors import InputError
 from quadgraph.base.units import DEFAULT_ETA
 
@@ -48,6 +49,7 @@ class Engine:
         self._name = Path(path).name
         self._material: Material | VolumeMaterial | str | None = None
         self._materials: dict[str, Material | str] = {}
+        self._placements: dict[str, dict[str, tuple[float, float, float]]] = {}
         self._solution: Solution | None = None
         self.lights = core.default_lights("", "y", self._open.graph.front)
 
@@ -56,7 +58,7 @@ class Engine:
         """Return one around the engine of a stage, whose scene sets material and lights; `name`: of the body's file."""
         self = cls.__new__(cls)
         self._open, self._name, self._material, self._lights, self._solution = engine, name, None, (), None
-        self._materials = {}
+        self._materials, self._placements = {}, {}
         return self
 
     def __repr__(self) -> str:
@@ -169,6 +171,29 @@ class Engine:
         self._engine.set_deformation([as_dict(step) for step in steps])
         self._solution = None
 
+    @property
+    def placements(self) -> dict[str, dict[str, tuple[float, float, float]]]:
+        """Where `place_body` has put bodies, by their names: "position", mm, and "rotation", degrees."""
+        return {name: dict(pose) for name, pose in self._placements.items()}
+
+    def place_body(
+        self,
+        name: str,
+        *,
+        position: Sequence[float] = (0.0, 0.0, 0.0),
+        rotation: Sequence[float] = (0.0, 0.0, 0.0),
+    ) -> None:
+        """Put one of `bodies` elsewhere: turned about the middle of its box, degrees about the axes x, y and z in this
+        order, then moved, mm, from where it lies in the file; without either it lies there again.
+
+        A deformation comes after it. Shadows, what bodies see of each other and the light between them follow at the
+        next solve, which says where bodies overlap. Raises InputError, and moves nothing.
+        """
+        pose = {"position": triple("position", position), "rotation": triple("rotation", rotation)}
+        wanted = {**self._placements, name: pose}
+        self._engine.set_placements(json.dumps({"placements": wanted}))
+        self._placements, self._solution = wanted, None
+
     def set_edits(self, edits: Sequence[Mapping[str, Any]]) -> None:
         """Change the material in places, one edit, or layer of edits, after the other (docs/scene.md, "Edits").
 
@@ -219,7 +244,7 @@ class Engine:
         Linear between the vertices of tets with fem and polygrids, one value a tet with quadgraph-fv and
         quadgraph-fdm; NaN outside the body. Raises InputError as `fluence`, and for points of another shape.
         """
-        method, places = self._solved_inside(), _as_points(points)
+        method, places = self._solved_inside(), as_points(points)
         return core.fluence_at(self._engine, method, places.reshape(-1, 3)).reshape(places.shape)
 
     def to_meshio(self, part: Part = "body") -> meshio.Mesh:
@@ -312,6 +337,16 @@ class Engine:
             self._take(layers.convergence["solve"])
         return Picture(layers, self._engine.metadata, options)
 
+    def body_at(
+        self, x: float, y: float, camera: Camera | str | None = None, **picture: Unpack[PictureOptions]
+    ) -> str | None:
+        """Return the name of the body that such a picture, as `render` takes it, shows at (x, y), pixels right and down
+        from its corner: one of `bodies`, "" of a file of one body, None beside them. Raises InputError.
+        """
+        around = {} if camera is None or isinstance(camera, str) else plain_members(camera)
+        members = json.dumps({"camera": around, "picture": plain_members(picture)})
+        return core.body_at(self._engine, float(x), float(y), members, camera if isinstance(camera, str) else "")
+
     @property
     def box(self) -> tuple[Floats, Floats]:
         """The lowest and the highest corner, (3,) mm each, of the box around the body at rest."""
@@ -335,14 +370,6 @@ class Engine:
         for each in self._engine.passes:
             times[each["name"]] = times.get(each["name"], 0.0) + each["time_ms"]
         return times
-
-
-def _as_points(points: npt.ArrayLike) -> Floats:
-    """Points, mm, as float32. Raises InputError."""
-    places = single(numbers("points", points, "(n, 3) or (..., 3) is wanted (mm)"))
-    if places.ndim < 1 or places.shape[-1] != 3:
-        raise InputError(f"points: shape {places.shape} found, (n, 3) or (..., 3) is wanted (mm)")
-    return places
 
 
 def _material_text(material: Material | str) -> str:

@@ -24,8 +24,9 @@ class Scene:
     """All that is shown. body: a baked .qgraph; what is None or left out is as in a scene file.
 
     material: a `Material` or a text as --material takes it; materials: of bodies by their names, where the file has
-    several; lights: None for the studio, and the ground with it, [] for darkness; edits, or layers of them, and cuts:
-    objects as scene files have them. Raises InputError naming the member and what is allowed.
+    several; placements: {"position": mm, "rotation": degrees} of bodies by their names, where they are put from where
+    they lie in the file; lights: None for the studio, and the ground with it, [] for darkness; edits, or layers of
+    them, and cuts: objects as scene files have them. Raises InputError naming the member and what is allowed.
     """
 
     body: str | Path
@@ -38,6 +39,7 @@ class Scene:
     solver: SolveOptions = field(default_factory=lambda: SolveOptions())
     picture: PictureOptions = field(default_factory=lambda: PictureOptions())
     materials: Mapping[str, Material | str] = field(default_factory=dict)
+    placements: Mapping[str, Mapping[str, Sequence[float]]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Check. Raises InputError."""
@@ -63,6 +65,8 @@ class Scene:
             document["material"] = _text(self.material)
         if self.materials:
             document["materials"] = {name: _text(material) for name, material in self.materials.items()}
+        if self.placements:
+            document["placements"] = plain_members(self.placements)
         if self.lights is not None:
             document["lights"] = [as_light(light).to_dict() for light in self.lights]
         document["deformation"] = [_STILL if in_memory(step) else as_dict(step) for step in self.deformation]

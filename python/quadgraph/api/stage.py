@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
-from typing import Literal, Self, TypeAlias
+from typing import Any, Literal, Self, TypeAlias
 
 from quadgraph import core
 from quadgraph.api.engine import Engine
@@ -78,7 +79,8 @@ class Stage:
         if self._scene is None or self._scene.body != wanted.body:
             self._forget()
         self._open.show(wanted._compiled())
-        moved = self._scene is not None and self._scene.deformation != wanted.deformation
+        shapes = [(scene.deformation, scene.placements) for scene in (self._scene, wanted) if scene is not None]
+        moved = shapes[0] != shapes[-1]
         self._scene = wanted
         if self._engine is not None and moved:
             self._engine._solution = None
@@ -95,6 +97,52 @@ class Stage:
         document = json.loads(self._open.after_gesture(gesture, right, up, light))
         moved = Scene.from_dict(document)
         return replace(moved, deformation=self._scene.deformation) if self._scene else moved
+
+    def body_at(self, x: float, y: float) -> str | None:
+        """Return the name of the body that the scene's picture shows at (x, y), as `Engine.body_at`.
+
+        Raises InputError.
+        """
+        return core.stage_body_at(self._open, float(x), float(y))
+
+    def painted(
+        self, brush: Mapping[str, Any], places: Sequence[tuple[float, float]], *, begins: bool = True
+    ) -> tuple[Scene, dict[str, Any]]:
+        """Return the scene that is shown after a brush went over places of its picture, pixels right and down from its
+        corner, at most 64 at once, as in the window; `begins`: a stroke begins, else the last one goes on there.
+
+        brush: `usual_brush` with other values, "tool" paint, erase or pick, and the number of a "layer", from 0; the
+        first stroke of a scene without layers makes one. Returned beside the scene: "touched", whether the first place
+        lies on a body, the "layer", and "colour" and "distance" of the brush, which `pick` takes up. Show the scene to
+        see it. Raises InputError, also for a layer that is hidden.
+        """
+        return self._edited(core.after_brush(self._open, json.dumps(dict(brush)), list(places), begins))
+
+    def relayered(self, change: Mapping[str, Any]) -> tuple[Scene, dict[str, Any]]:
+        """Return the scene that is shown after a change of its layers: {"layer": 0, "change": "add"}, and alike remove,
+        up, down, and with a "value" name, visible, opacity; and the number of the "layer" then. Raises InputError.
+        """
+        return self._edited(core.after_layer(self._open, json.dumps(dict(change))))
+
+    def _edited(self, told: str) -> tuple[Scene, dict[str, Any]]:
+        state = json.loads(told)
+        edits = state.pop("edits")
+        if self._scene is None:
+            raise InputError("no scene is shown")
+        return replace(self._scene, edits=edits), state
+
+    @property
+    def usual_brush(self) -> dict[str, Any]:
+        """The brush that a body of this size has at first: "tool", "colour" (linear), "distance" that light goes in it,
+        "radius", "depth" and "falloff", mm, "strength" 0 to 1. Raises InputError before the first scene.
+        """
+        brush: dict[str, Any] = json.loads(core.usual_brush(self._open))
+        return brush
+
+    @property
+    def methods(self) -> tuple[str, ...]:
+        """Names of the methods that the body's file has levels for. Raises InputError before the first scene."""
+        return tuple(core.methods_of_body(self._open))
 
     def solve(self) -> Solution:
         """Solve with the scene's options. Raises InputError, SolverError."""

@@ -10,7 +10,6 @@ import io
 import signal
 import threading
 import time
-from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import FrameType
@@ -24,16 +23,19 @@ from quadgraph.api.picture import Picture
 from quadgraph.api.scene import Scene
 from quadgraph.api.solution import ErrorEstimate, Solution
 from quadgraph.api.stage import Stage
-from quadgraph.base.errors import QuadGraphError, SolverError
+from quadgraph.base.errors import InputError, QuadGraphError, SolverError
+from quadgraph.browser.inbox import Inbox, Message
 from quadgraph.browser.pace import Pace
-from quadgraph.browser.shown_scene import GESTURES, ShownScene
+from quadgraph.browser.shown_scene import ShownScene
 
 _SETTLED_S = 0.25  # after the last change, before the scene is solved at rest
-_MOST_WAITING = 256  # messages
 _QUALITY = {False: 80, True: 93}  # of JPEG, by whether the frame is the one at rest
 # Members that a solve depends on.
-_SOLVED = ("material", "materials", "lights", "edits", "deformation", "cuts", "solver")
+_SOLVED = ("material", "materials", "lights", "edits", "placements", "deformation", "cuts", "solver")
 
+
+# What ends a picture and not the server: of a method, say, that the file has no levels for.
+_NO_PICTURE = (SolverError, InputError)
 
 _Made = TypeVar("_Made")
 
@@ -44,72 +46,15 @@ class _Dropped(BaseException):
 
 @dataclass(frozen=True)
 class ShownFrame:
-    """A picture for pages. serial: of it; jpeg: the file; said: what stands beside it, ready for JSON; srgb: (h, w, 3)
-    of one at rest.
+    """A picture for pages. serial: of it; jpeg: the file; said: what stands beside it, ready for JSON; scene: what it
+    shows, as in a scene file; srgb: (h, w, 3) of one at rest.
     """
 
     serial: int
     jpeg: bytes
     said: Mapping[str, Any]
+    scene: Mapping[str, Any]
     srgb: npt.NDArray[np.uint8] | None
-
-
-@dataclass(frozen=True)
-class Message:
-    """What a page said; `refuse` tells it why that cannot be."""
-
-    content: Mapping[str, Any]
-    refuse: Callable[[str], None]
-
-
-class Inbox:
-    """What pages have said and the engine has not done. Safe between threads."""
-
-    def __init__(self, wake: Callable[[], None]) -> None:
-        """wake: called after each message."""
-        self._waiting: deque[Message] = deque()
-        self._changed = threading.Condition()
-        self._wake = wake
-
-    def put(self, message: Message) -> None:
-        """Add one; a gesture joins the one before it where both are of a kind. Refuses where too many wait."""
-        with self._changed:
-            last = self._waiting[-1] if self._waiting else None
-            joined = _joined(last.content, message.content) if last else None
-            if joined is not None:
-                self._waiting[-1] = Message(joined, message.refuse)
-            elif len(self._waiting) < _MOST_WAITING:
-                self._waiting.append(message)
-            else:
-                message.refuse(f"{_MOST_WAITING} changes are waiting already")
-                return
-            self._changed.notify()
-        self._wake()
-
-    @property
-    def waiting(self) -> bool:
-        """Whether there is anything to do; asked without the lock, which an exception of a signal might leave held."""
-        return bool(self._waiting)
-
-    def take(self, seconds: float | None) -> list[Message]:
-        """Wait so long, or None for ever, for messages, and take all there are."""
-        with self._changed:
-            self._changed.wait_for(lambda: bool(self._waiting), seconds)
-            found = list(self._waiting)
-            self._waiting.clear()
-        return found
-
-
-def _joined(before: Mapping[str, Any], now: Mapping[str, Any]) -> dict[str, Any] | None:
-    """One message for two that follow each other: sums of a gesture, the later of two values at a place."""
-    if now.get("gesture") in list(GESTURES) and before.get("gesture") == now["gesture"]:
-        same = before.get("light") == now.get("light")
-        numbers = [of.get(name, 0) for of in (before, now) for name in ("right", "up")]
-        if same and all(isinstance(number, (int, float)) for number in numbers):
-            return {**now, "right": numbers[0] + numbers[2], "up": numbers[1] + numbers[3]}
-    if "set" in now and before.get("set") == now["set"]:
-        return dict(now)
-    return None
 
 
 class FrameLoop:
@@ -155,28 +100,38 @@ class FrameLoop:
         """Do what was said, and show it."""
         for message in messages:
             try:
-                self._do(message.content)
+                self._stage.show(self._shown.scene)  # what hands start from
+                answer = self._do(message.content)
+                if answer:
+                    message.answer(answer)
             except QuadGraphError as error:
                 message.refuse(str(error))
         if self._at_rest != self._shown.scene:
             self._at_rest = None
             self._move()
 
-    def _do(self, said: Mapping[str, Any]) -> None:
+    def _do(self, said: Mapping[str, Any]) -> Mapping[str, Any] | None:
+        """Do one thing, and return what its page alone is told. Raises InputError."""
+        shown = self._shown
         if "gesture" in said:
             right, up, light = (said.get(name, 0) for name in ("right", "up", "light"))
-            self._shown.move(self._stage, said["gesture"], right, up, light)
-            self._stage.show(self._shown.scene)  # what the next gesture starts from
+            shown.move(self._stage, said["gesture"], right, up, light)
+        elif "pick" in said:
+            return {"picked": shown.body_at(self._stage, said["pick"])}
+        elif "paint" in said:
+            begins = said.get("begins", False)
+            state = shown.paint(self._stage, said["paint"], said.get("at"), begins)
+            return {"painted": state} if begins else None
+        elif "layers" in said:
+            return {"layered": shown.relayer(self._stage, said["layers"])}
         elif "set" in said:
-            self._shown.set(said["set"], said.get("value"))
+            shown.set(said["set"], said.get("value"))
         elif "add" in said:
-            self._shown.add_light(self._stage, said["add"])
-        elif said.get("do") == "undo":
-            self._shown.undo()
-        elif said.get("do") == "restore":
-            self._shown.restore()
+            shown.add_light(self._stage, said["add"])
         else:
-            self._shown.end_step()
+            steps = {"undo": shown.undo, "redo": shown.redo, "restore": shown.restore}
+            steps.get(str(said.get("do")), shown.end_step)()
+        return None
 
     def _move(self) -> None:
         """A frame in motion."""
@@ -193,7 +148,7 @@ class FrameLoop:
                 self._solved = wanted
                 self._pace.solved(time.perf_counter() - start, corrected)
             self._show_frame(self._drawn(scene, solving), scene, start, at_rest=False)
-        except SolverError as error:
+        except _NO_PICTURE as error:
             self._tell(str(error), scene, start)
 
     def _drawn(self, scene: Scene, solving: bool) -> Picture:
@@ -235,7 +190,7 @@ class FrameLoop:
                 self._show_frame(self._until_dropped(self._stage.render), scene, start, at_rest=True)
         except _Dropped:
             return
-        except SolverError as error:
+        except _NO_PICTURE as error:
             self._tell(str(error), scene, start)
         self._at_rest = scene
 
@@ -270,8 +225,11 @@ class FrameLoop:
     ) -> None:
         self._serial += 1
         told = {"serial": self._serial, "rest": at_rest, "ms": 1e3 * (time.perf_counter() - start)}
-        state = {"scene": scene.to_dict(), "undo": self._shown.can_undo, "roughness": self._shown.roughness}
-        self._show(ShownFrame(self._serial, jpeg, {**told, **said, **state}, srgb))
+        document = scene.to_dict()
+        shown = {name: value for name, value in document.items() if name != "edits"}  # of thousands of points, maybe
+        can = {"undo": self._shown.can_undo, "redo": self._shown.can_redo}
+        state = {"scene": shown, "layers": self._shown.layers, "roughness": self._shown.roughness, **can}
+        self._show(ShownFrame(self._serial, jpeg, {**told, **said, **state}, document, srgb))
 
 
 def _solved_members(scene: Scene) -> tuple[Any, ...]:

@@ -1,6 +1,6 @@
 """The server between pages and frames: one page, one WebSocket for each that shows it, on a thread of its own.
 
-A page sends JSON, the members of `frame_loop.Message`; it is sent, for every frame, a JSON text and then the JPEG, the
+A page sends JSON, as `FrameLoop` does it; it is sent, for every frame, a JSON text and then the JPEG, the
 newest one whenever it has shown the one before. Whoever has the token may look and change; nothing else is asked.
 """
 
@@ -21,7 +21,8 @@ import numpy.typing as npt
 
 from quadgraph.base.errors import InputError
 from quadgraph.base.optional_package import optional_package
-from quadgraph.browser.frame_loop import Inbox, Message, ShownFrame
+from quadgraph.browser.frame_loop import ShownFrame
+from quadgraph.browser.inbox import Inbox, Message
 
 if TYPE_CHECKING:
     from aiohttp import web
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
 MOST_PAGES = 8
 MOST_BYTES = 1 << 16  # of a message
 _SHOWN_S = 5.0  # after which a page that has not said that it shows a frame gets the next
-_FILES = {"page.js": "text/javascript", "page.css": "text/css"}
+_FILES = {"page.js": "text/javascript", "brush.js": "text/javascript", "page.css": "text/css"}
 # The token stands in the address: it must not leave with a link, or stay in a cache.
 _HEADERS = {
     "Cache-Control": "no-store",
@@ -189,7 +190,7 @@ class Server:
 
         if not self._knows(request):
             return self._refused()
-        scene = self.frame.said["scene"] if self.frame else {}
+        scene = dict(self.frame.scene) if self.frame else {}
         text = json.dumps({"quadgraph_scene": 1, **scene}, indent=2)
         headers = {**_HEADERS, "Content-Disposition": 'attachment; filename="scene.json"'}
         return web.Response(text=text, content_type="application/json", headers=headers)
@@ -240,14 +241,14 @@ class Server:
         elif "shown" in said:
             page.shown.set()
         elif self._inbox is not None:
-            self._inbox.put(Message(said, lambda why: self._refuse(page, why)))
+            self._inbox.put(Message(said, lambda answer: self._answer(page, dict(answer))))
 
-    def _refuse(self, page: Page, why: str) -> None:
-        """Tell a page why what it said cannot be; from any thread."""
+    def _answer(self, page: Page, answer: dict[str, Any]) -> None:
+        """Tell one page something; from any thread."""
 
         async def tell() -> None:
             if not page.socket.closed:
-                await page.socket.send_json({"refused": why})
+                await page.socket.send_json(answer)
 
         def begin() -> None:
             self._telling.add(task := self._loop.create_task(tell()))

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -15,14 +14,17 @@ from quadgraph.api.scene import Scene, SceneFile
 from quadgraph.api.stage import Stage
 from quadgraph.base.array_types import Doubles
 from quadgraph.base.errors import InputError
+from quadgraph.browser.page_values import NAMES_FILE, files, layers_of, material_files, points_in, shares, shown
 
 # What of a scene a page may set, and all below.
 ALLOWED = (
     "/camera",
     "/material",
+    "/materials",
+    "/placements",
     "/lights",
-    "/edits",
     "/deformation",
+    "/cuts",
     "/solver/method",
     "/solver/model",
     "/solver/correction",
@@ -37,22 +39,27 @@ ALLOWED = (
     "/picture/surroundings",
 )
 LEAST_SIDE, MOST_SIDE = 64, 2048  # pixels
-MOST_MEMBERS = 256  # lights, edits, steps of a deformation
+MOST_MEMBERS = 256  # lights, steps of a deformation, cuts
+MOST_STROKE_POINTS = 50_000  # of all strokes together
 MOST_UNDONE = 100
+_CUTTING = "shortest-path"  # the method that alone shows cuts
 GESTURES = {"orbit": "camera", "pan": "camera", "zoom": "camera", "turn": "lights"}
-_NAMES_FILE = frozenset({"file", "image", "mask", "shapes", "volume", "from"})
 _SIDES = ("/picture/width", "/picture/height")
 
 
 class ShownScene:
     """A scene with all members filled in, and the steps back from it."""
 
-    def __init__(self, scene: Scene) -> None:
-        """Hold a scene. Raises InputError for shapes in memory."""
+    def __init__(self, scene: Scene, bodies: Sequence[str] = ()) -> None:
+        """Hold a scene; bodies: those that its file names. Raises InputError for shapes in memory."""
+        self._bodies = tuple(bodies)
         self._start = scene.to_dict()
-        self._files = {*_files(self._start), *_material_files(self._start.get("material"))}
+        materials = [self._start.get("material"), *self._start.get("materials", {}).values()]
+        self._files = {*files(self._start), *(name for each in materials for name in material_files(each))}
         self._file = SceneFile(scene)
         self._undone: list[dict[str, Any]] = []
+        self._redone: list[dict[str, Any]] = []
+        self._uncut: str | None = None  # the method before there were cuts
         self._last = ""  # place that was set last
         self._scene: Scene | None = None
 
@@ -82,34 +89,126 @@ class ShownScene:
         """Whether there is a step back."""
         return bool(self._undone)
 
+    @property
+    def can_redo(self) -> bool:
+        """Whether a step was taken back, and nothing done since."""
+        return bool(self._redone)
+
+    @property
+    def layers(self) -> list[dict[str, Any]]:
+        """What a page shows of the layers of strokes (`layers_of`)."""
+        return layers_of(self.document["edits"])
+
     def set(self, pointer: Any, value: Any) -> None:
         """Put a value at a JSON pointer. Raises InputError, and changes nothing, for what a page may not set."""
         if not isinstance(pointer, str) or not any(pointer == top or pointer.startswith(f"{top}/") for top in ALLOWED):
-            raise InputError(f"set: found {_shown(pointer)}, a page may set {', '.join(ALLOWED)} and what is below")
+            raise InputError(f"set: found {shown(pointer)}, a page may set {', '.join(ALLOWED)} and what is below")
         self._check(pointer, value)
+        if pointer.startswith("/materials/"):  # a body may have the name of a number, which is no place in an array
+            body = pointer.removeprefix("/materials/")
+            self._check_bodies([body])
+            self._change(pointer, {"/materials": {**self.document.get("materials", {}), body: value}})
+        elif pointer.startswith("/placements/"):
+            body, *member = pointer.removeprefix("/placements/").split("/")
+            self._check_bodies([body])
+            poses = self.document.get("placements", {})
+            pose = {**poses.get(body, {}), member[0]: value} if member else value
+            self._change(pointer, {"/placements": {**poses, body: pose}})
+        elif pointer in {"/materials", "/placements"}:
+            self._check_bodies(value if isinstance(value, dict) else [])
+            self._change(pointer, {pointer: value})
+        elif pointer.split("/")[1] == "material":
+            self._change(pointer, {pointer: value, "/materials": {}})  # that of all bodies
+        else:
+            self._change(pointer, {pointer: value})
+
+    def _change(self, place: str, values: Mapping[str, Any]) -> None:
+        """Put values at places, all or none, as a step of its own or with others at `place`. Raises InputError."""
         before = self.document
-        self._file.set(pointer, value)
-        if pointer.split("/")[1] == "material" and "materials" in before:
-            self._file.set("/materials", {})  # the page's is that of all bodies
+        try:
+            for pointer, value in values.items():
+                self._file.set(pointer, value)
+            self._keep_method()
+        except InputError:
+            self._put(before, camera=True, size=True)
+            raise
         self._scene = None
-        if pointer.startswith(("/camera", *_SIDES)):
+        if place.startswith(("/camera", *_SIDES)):
             return
         # A slider that is drawn sets the same place again and again: one step back undoes all of it.
-        if not (self._undone and self._last == pointer):
+        if not (self._undone and self._last == place):
             self._undone = [*self._undone, before][-MOST_UNDONE:]
-        self._last = pointer
+        self._redone = []
+        self._last = place
+
+    def _keep_method(self) -> None:
+        """Show cuts by the method that can, and what is whole again by the one before, as the window does."""
+        scene = self._file.at(0)
+        method = str(scene.solver["method"])
+        if scene.cuts and method != _CUTTING:
+            self._uncut = method
+            self._file.set("/solver/method", _CUTTING)
+        elif not scene.cuts and self._uncut is not None:
+            self._file.set("/solver/method", self._uncut)
+            self._uncut = None
+
+    def paint(self, stage: Stage, brush: Any, places: Any, begins: Any) -> dict[str, Any]:
+        """Lead a brush over places of the picture of the scene that the stage shows: shares of its width and height,
+        right and down; `begins`: a stroke begins. Return what `Stage.painted` says of it, and the `layers`.
+
+        Raises InputError.
+        """
+        if not isinstance(brush, dict) or not isinstance(begins, bool):
+            raise InputError('paint: found no brush, or no truth in "begins"; docs/window.md, In a browser')
+        width, height = (self.scene.picture[side] for side in ("width", "height"))
+        pixels = [(x * width, y * height) for x, y in shares("at", places)]
+        if begins:
+            self.end_step()
+        scene, state = stage.painted(brush, pixels, begins=begins)
+        self._take_edits(scene, "/edits, a stroke")
+        return state | {"layers": self.layers}
+
+    def relayer(self, stage: Stage, change: Any) -> dict[str, Any]:
+        """Change the layers of the scene that the stage shows, as `Stage.relayered`. Raises InputError."""
+        if not isinstance(change, dict):
+            raise InputError(f"layers: found {shown(change)}, an object is wanted")
+        scene, state = stage.relayered(change)
+        slides = change["change"] == "opacity"
+        if not slides:
+            self.end_step()
+        self._take_edits(scene, "/edits, an opacity")
+        if not slides:
+            self.end_step()
+        return state | {"layers": self.layers}
+
+    def _take_edits(self, scene: Scene, place: str) -> None:
+        edits = scene.to_dict()["edits"]
+        if edits == self.document["edits"]:
+            return
+        points = points_in(edits)
+        if points > MOST_STROKE_POINTS:
+            said = f"found strokes of {points} points, allowed are {MOST_STROKE_POINTS}; remove a layer"
+            raise InputError(f"edits: {said}")
+        self._change(place, {"/edits": edits})
 
     def move(self, stage: Stage, gesture: Any, right: Any, up: Any, light: Any) -> None:
         """Do what a hand did to the camera or a light, of the scene that the stage shows. Raises InputError."""
         if gesture not in list(GESTURES):  # which asks for no hash
-            raise InputError(f"gesture: found {_shown(gesture)}, allowed are {', '.join(GESTURES)}")
+            raise InputError(f"gesture: found {shown(gesture)}, allowed are {', '.join(GESTURES)}")
         for name, number in (("right", right), ("up", up)):
             if isinstance(number, bool) or not isinstance(number, (int, float)) or not abs(number) <= 1e4:
-                raise InputError(f"{name}: found {_shown(number)}, allowed are numbers up to 10000 either way")
+                raise InputError(f"{name}: found {shown(number)}, allowed are numbers up to 10000 either way")
         if isinstance(light, bool) or not isinstance(light, int) or light < 0:
-            raise InputError(f"light: found {_shown(light)}, allowed is the number of one, from 0")
+            raise InputError(f"light: found {shown(light)}, allowed is the number of one, from 0")
         member = GESTURES[gesture]
         self.set(f"/{member}", stage.moved(gesture, right, up, light).to_dict()[member])
+
+    def body_at(self, stage: Stage, place: Any) -> str | None:
+        """Name of the body at a place [x, y] of the picture, in shares of its size right and down; None beside them.
+        Raises InputError.
+        """
+        ((x, y),) = shares("pick", [place])
+        return stage.body_at(x * self.scene.picture["width"], y * self.scene.picture["height"])
 
     def add_light(self, stage: Stage, kind: Any) -> None:
         """Add a light of a kind, about as strong as the first of a scene by itself. Raises InputError."""
@@ -123,7 +222,7 @@ class ShownScene:
             "ambient": even.to_dict(),
         }
         if kind not in list(made):
-            raise InputError(f"add: found {_shown(kind)}, allowed are {', '.join(made)}")
+            raise InputError(f"add: found {shown(kind)}, allowed are {', '.join(made)}")
         self.end_step()
         self.set("/lights", [*lights, made[kind]])
         self.end_step()
@@ -136,68 +235,71 @@ class ShownScene:
         """Go a step back, camera and size of the picture apart. Raises InputError where there is none."""
         if not self._undone:
             raise InputError("undo: there is nothing to undo")
+        now = self.document
         self._put(self._undone[-1])
         self._undone.pop()
+        self._redone.append(now)
+        self.end_step()
+
+    def redo(self) -> None:
+        """Do again what was undone last. Raises InputError where there is nothing."""
+        if not self._redone:
+            raise InputError("redo: there is nothing to redo")
+        now = self.document
+        self._put(self._redone[-1])
+        self._redone.pop()
+        self._undone.append(now)
         self.end_step()
 
     def restore(self) -> None:
         """Go back to the scene as it was opened, the size of the picture apart; a step that can be undone."""
         self._undone = [*self._undone, self.document][-MOST_UNDONE:]
         self._put(self._start, camera=True)
+        self._redone = []
         self.end_step()
 
-    def _put(self, document: Mapping[str, Any], camera: bool = False) -> None:
-        picture = {**document["picture"], **{side: self.document["picture"][side] for side in ("width", "height")}}
+    def _put(self, document: Mapping[str, Any], camera: bool = False, size: bool = False) -> None:
+        now = {} if size else {side: self.document["picture"][side] for side in ("width", "height")}
+        picture = {**document["picture"], **now}
         wanted = {**document, "picture": picture}
-        for member in ("material", "lights", "edits", "deformation", "solver", *(("camera",) if camera else ())):
+        members = ("material", "lights", "edits", "deformation", "cuts", "solver")
+        for member in (*members, *(("camera",) if camera else ())):
             self._file.set(f"/{member}", wanted[member])
-        self._file.set("/materials", wanted.get("materials", {}))
+        for member in ("materials", "placements"):
+            self._file.set(f"/{member}", wanted.get(member, {}))
         self._file.set("/picture", picture)
         self._scene = None
 
+    def _check_bodies(self, names: Iterable[str]) -> None:
+        for name in names:
+            if name not in self._bodies:
+                allowed = ", ".join(self._bodies) or "none, it is one body"
+                raise InputError(f"bodies: found {shown(name)}, the file has {allowed}")
+
     def _check(self, pointer: str, value: Any) -> None:
-        named = set(_files(value))
+        named = set(files(value))
         last = pointer.rsplit("/", 1)[-1]
-        if last in _NAMES_FILE and isinstance(value, str):
+        if last in NAMES_FILE and isinstance(value, str):
             named.add(value)
-        if pointer == "/material":
-            named |= set(_material_files(value))
+        if pointer.startswith("/material"):
+            for material in value.values() if isinstance(value, dict) else [value]:
+                named |= set(material_files(material))
+        several = bool(self.document.get("materials"))
+        if (pointer == "/cuts" and value and several) or (pointer.startswith("/materials") and self.scene.cuts):
+            raise InputError(f"{pointer}: cuts are shown by {_CUTTING}, which knows one material for all bodies")
+        if pointer == "/solver/method" and self.scene.cuts and value != _CUTTING:
+            raise InputError(f"{pointer}: found {shown(value)}, cuts are shown by {_CUTTING} alone; undo them first")
         if not named <= self._files:
-            raise InputError(f"{pointer}: found the file {_shown(min(named - self._files))}, a page names no new files")
+            raise InputError(f"{pointer}: found the file {shown(min(named - self._files))}, a page names no new files")
         if isinstance(value, (list, dict)) and len(value) > MOST_MEMBERS:
             raise InputError(f"{pointer}: found {len(value)} members, allowed are {MOST_MEMBERS}")
         if pointer.startswith("/picture/") and pointer in _SIDES:
             whole = isinstance(value, int) and not isinstance(value, bool)
             if not whole or not LEAST_SIDE <= value <= MOST_SIDE:
-                raise InputError(f"{pointer}: found {_shown(value)}, allowed are {LEAST_SIDE} to {MOST_SIDE} pixels")
+                raise InputError(f"{pointer}: found {shown(value)}, allowed are {LEAST_SIDE} to {MOST_SIDE} pixels")
 
 
 def _point_like(key: Mapping[str, Any], centre: Doubles, far: float) -> dict[str, Any]:
     """A point light that lights the middle of the body as a directional one does, so many mm from it."""
     power = [4 * np.pi * far**2 * each for each in key["irradiance"]]
     return {"type": "point", "position": list(centre - far * np.asarray(key["direction"])), "power": power}
-
-
-def _files(value: Any) -> Iterable[str]:
-    """Names of files in the members of a JSON value, however deep."""
-    if isinstance(value, list):
-        for each in value:
-            yield from _files(each)
-    elif isinstance(value, Mapping):
-        for name, each in value.items():
-            if name in _NAMES_FILE and isinstance(each, str):
-                yield each
-            else:
-                yield from _files(each)
-
-
-def _material_files(material: Any) -> Iterable[str]:
-    """The file that a material's text names, if it does."""
-    named = core.volume_name(material) if isinstance(material, str) else None
-    return [named[0]] if named else []
-
-
-def _shown(value: Any) -> str:
-    """A JSON value in an error, at most 40 letters of it."""
-    text = json.dumps(value)
-    return text if len(text) <= 40 else f"{text[:37]}..."

@@ -11,7 +11,7 @@ from typing import get_args
 
 from rich.console import Console
 
-from quadgraph.api.choices import Tone
+from quadgraph.api.choices import Model, Tone
 from quadgraph.api.scene import Scene
 from quadgraph.base.errors import InputError
 from quadgraph.commands import own_mesh, scene_file, scene_options, scene_overrides
@@ -65,16 +65,22 @@ def run(args: argparse.Namespace) -> int:
     if token and len(token) < _LEAST_TOKEN:
         raise InputError(f"{_TOKEN}: found {len(token)} letters, allowed are at least {_LEAST_TOKEN}")
     with _scene(args) as scene, Stage(device=args.device) as stage:
-        shown = ShownScene(scene)
+        stage.show(scene)
+        shown = ShownScene(scene, stage.engine.bodies)
+        low, high = stage.engine.box
         hello = {
             "file": args.file.name,
             "materials": list(core.material_names()),
             "tones": list(get_args(Tone)),
+            "bodies": list(stage.engine.bodies),
+            "methods": list(stage.methods),
+            "models": list(get_args(Model)),
+            "brush": stage.usual_brush,
+            "box": [low.tolist(), high.tolist()],
         }
         server = Server(args.host, args.port, token, hello)
         frames = FrameLoop(stage, shown, server.show)
         try:
-            stage.show(shown.scene)
             server.open(frames.inbox)
             Console(highlight=False, soft_wrap=True).print(server.address, markup=False)
             frames.run()

@@ -1,11 +1,10 @@
-// Going back and forth between scenes, and what the brush does.
+// Going back and forth between scenes.
 #include "engine/app/history.h"
 
 #include <doctest/doctest.h>
 
-#include <glm/geometric.hpp>
-
-#include "engine/app/brush.h"
+#include "engine/scene/brush.h"
+#include "engine/scene/layers.h"
 
 using namespace quadgraph;
 
@@ -53,68 +52,6 @@ TEST_CASE("what could not be shown is no step to go back to") {
   CHECK(history.can_redo());
 }
 
-TEST_CASE("a stroke follows the hand in steps of the brush's size") {
-  const Brush brush = Brush::for_body(15);
-  Scene scene;
-  scene.layers = {{.name = "Layer 1"}};
-  brush.begin(scene, 0, {{.at = {0, 0, 0}}});
-  REQUIRE(scene.layers[0].edits.size() == 1);
-  check_edit(scene.layers[0].edits[0]);
-  for (int i = 1; i <= 100; ++i) brush.lead(scene, 0, {{.at = {0.05f * static_cast<float>(i), 0, 0}}});
-  const auto& stroke = scene.layers[0].edits[0].stroke;
-  CHECK(stroke.size() > 12);
-  CHECK(stroke.size() < 20);
-  CHECK(stroke.back().x > 5 - 0.4f);
-  brush.begin(scene, 0, {{.at = {0, 3, 0}}});
-  CHECK(scene.layers[0].edits.size() == 2);
-}
-
-TEST_CASE("paint has the colour that was asked for, as strong as that, and can be picked and erased") {
-  Brush brush = Brush::for_body(15);
-  Scene scene;
-  scene.layers = {{.name = "Layer 1"}};
-  scene.material = "wholemilk";
-  const MaterialLook own = look_of(scene.material).value();
-  const auto painted = [&](float strength) {
-    brush.strength = strength;
-    brush.begin(scene, 0, {{.at = {0, 0, 0}}});
-    const Edit& edit = scene.layers[0].edits.back();
-    check_edit(edit);
-    CHECK(edit.operation == EditOperation::set);
-    gpu::Material material{};
-    material.sigma_s_prime = edit.sigma_s_prime.value();
-    material.sigma_a = edit.sigma_a.value();
-    material.eta = own.eta;
-    return look_of(material);
-  };
-  const MaterialLook whole = painted(1), none = painted(0);
-  CHECK(glm::distance(whole.colour, brush.look.colour) < 0.01f);
-  CHECK(whole.distance == doctest::Approx(brush.look.distance).epsilon(0.01));
-  CHECK(glm::distance(none.colour, own.colour) < 0.02f);
-  brush.strength = 1;
-  scene.layers[0].edits.pop_back();
-  const glm::vec3 red = brush.look.colour;
-  brush.pick(scene, {{.at = {5, 0, 0}}});  // beside the stroke
-  CHECK(glm::distance(brush.look.colour, own.colour) < 0.01f);
-  brush.pick(scene, {{.at = {0.1f, 0, 0}}});
-  CHECK(glm::distance(brush.look.colour, red) < 0.01f);
-  Brush::erase(scene.layers[0], {{.at = {5, 0, 0}}});
-  CHECK(scene.layers[0].edits.size() == 1);
-  Brush::erase(scene.layers[0], {{.at = {0.1f, 0, 0}}});
-  CHECK(scene.layers[0].edits.empty());
-  Brush::erase(scene.layers[0], {{.at = {0, 0, 0}}});
-}
-
-TEST_CASE("a material of a colour and a distance shows them") {
-  for (const Swatch& swatch : swatches()) {
-    if (swatch.name == "spectralon") continue;  // absorbs nothing: no colour has an inverse there
-    const MaterialLook look = look_of(material_of(swatch.look)).value();
-    CHECK_MESSAGE(glm::distance(look.colour, swatch.look.colour) < 0.03f, swatch.name);
-    CHECK(look.eta == doctest::Approx(swatch.look.eta));
-  }
-  CHECK(!look_of("wax.npz"));
-}
-
 TEST_CASE("what was before the last step is told and changes nothing") {
   Scene scene;
   History history(scene);
@@ -128,43 +65,6 @@ TEST_CASE("what was before the last step is told and changes nothing") {
   CHECK(history.can_undo());
   scene.material = "wax";  // not noted yet: a slider is held
   CHECK(history.before(scene).material == "jade");
-}
-
-TEST_CASE("a stamp lies on the surface where the brush touches it, the way up that is seen") {
-  ImagePyramid image{.columns = 40, .rows = 20, .levels = 1, .texels = std::vector<glm::vec3>(800, glm::vec3(1))};
-  Brush brush = Brush::for_body(15);
-  brush.edit.image = std::make_shared<const ImagePyramid>(image);
-  brush.edit.softness = 100;
-  Scene scene;
-  scene.layers = {{.name = "Layer 1"}};
-  const glm::vec3 there(0, 0, 10);
-  brush.begin(scene, 0, {{there, {0, 0, -1}, {0, 1, 0}}});
-  brush.lead(scene, 0, {{there + glm::vec3(0.01f, 0, 0), {0, 0, -1}, {0, 1, 0}}});
-  REQUIRE(scene.layers[0].edits.size() == 1);
-  check_edit(scene.layers[0].edits[0]);
-  const Placement placement = scene.layers[0].edits[0].placement.value();
-  CHECK(placement.centre.x == 0.01f);
-  CHECK(placement.size.x == doctest::Approx(2 * brush.edit.radius));
-  CHECK(placement.size.y == doctest::Approx(brush.edit.radius));
-  CHECK(scene.layers[0].edits[0].softness <= 0.25f * placement.size.y);
-  CHECK(scene.layers[0].edits[0].stroke.empty());
-}
-
-TEST_CASE("what the brush touches goes with a body that has been turned and stretched") {
-  // At rest a triangle in the plane x = 2, seen from +x; now it lies in z = 7, twice as high.
-  const std::vector<glm::vec3> rest = {{2, 0, 0}, {2, 0, -1}, {2, 1, 0}}, now = {{0, 0, 7}, {1, 0, 7}, {0, 2, 7}};
-  const std::vector<glm::uvec3> triangles = {{0, 1, 2}};
-  const DisplayMesh mesh{rest, {}, triangles, {}, {}};
-  const Camera camera = place_camera({.elevation = 0}, {{0.3f, 0.5f, 7}, 1}, 1);
-  const auto picked = pick(mesh, now, camera, {0, 0});
-  REQUIRE(picked.has_value());
-  const TouchPlace touch = touched(*picked, camera);
-  CHECK(glm::distance(touch.at, glm::vec3(2, 0.25f, -0.3f)) < 1e-5f);
-  CHECK(glm::distance(touch.inward, glm::vec3(-1, 0, 0)) < 1e-5f);
-  CHECK(glm::distance(touch.upright, glm::vec3(0, 1, 0)) < 1e-5f);
-  const Camera above = place_camera({.elevation = 90}, {{0.3f, 0.5f, 7}, 1}, 1);  // upright is then across what is seen
-  const Picked flat{.position = {0, 0, 0}, .at_rest = {0, 0, 0}, .normal = above.up};
-  CHECK(glm::distance(touched(flat, above).upright, -above.backward) < 1e-5f);
 }
 
 TEST_CASE("undo is of the body, and leaves alone by what it is solved and how it is looked at") {
@@ -188,4 +88,25 @@ TEST_CASE("undo is of the body, and leaves alone by what it is solved and how it
   CHECK(same_work(scene, changed));
   scene.tone.white_balance = 4000;
   CHECK(!same_work(scene, changed));
+}
+TEST_CASE("undo brings a removed layer back, with its strokes, name and opacity") {
+  const Brush brush = Brush::for_body(15);
+  Scene scene;
+  std::size_t active = 0;
+  for (int i = 0; i < 2; ++i) {
+    add_layer(scene, active);
+    brush.begin(scene, active, {});
+  }
+  scene.layers[1].name = "Veins";
+  scene.layers[1].opacity = 0.5f;
+  History history(scene);
+  const Scene before = scene;
+  remove_layer(scene, active);
+  history.note(scene);
+  CHECK(scene.layers.size() == 1);
+  CHECK(history.undo(scene) == before);
+  CHECK(history.redo(before) == scene);
+  scene.layers[0].visible = false;
+  history.note(scene);
+  CHECK(history.undo(scene).layers[0].visible);
 }

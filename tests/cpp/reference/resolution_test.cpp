@@ -15,7 +15,7 @@ using namespace quadgraph;
 
 namespace {
 
-constexpr std::array<float, 1> one_index = {1.3f};
+constexpr std::array<float, 1> usual_index = {1.3f};
 
 double error_of(double albedo, double depth, Model model) {
   const LayeredHalfSpace found = layered_half_space(albedo, 1.3, depth, model);
@@ -107,18 +107,18 @@ TEST_CASE(
     "words are said of elements deeper than the modes can follow, of thin bodies, and of diffusion that absorbs") {
   const std::vector<SurfaceSample> samples = {{2.0, 1.0, 0}};
   const std::vector<gpu::Optical> clear = {medium(.9f, .1f)}, dark = {medium(.2f, 1.8f)};
-  CHECK(mesh_warning(resolution_of(samples, clear, one_index, Model::sp3)).empty());
-  CHECK(mesh_warning(resolution_of(samples, dark, one_index, Model::sp3)).find("decay lengths") != std::string::npos);
-  CHECK(resolution_of(samples, dark, one_index, Model::sp3).error > .05);
-  CHECK(model_warning(clear, one_index, 10, Source::buried, Model::sp3).empty());
-  CHECK(model_warning(clear, one_index, .5, Source::buried, Model::sp3).find("0.5 mean free paths") !=
+  CHECK(mesh_warning(resolution_of(samples, clear, usual_index, Model::sp3)).empty());
+  CHECK(mesh_warning(resolution_of(samples, dark, usual_index, Model::sp3)).find("decay lengths") != std::string::npos);
+  CHECK(resolution_of(samples, dark, usual_index, Model::sp3).error > .05);
+  CHECK(model_warning(clear, usual_index, 10, Source::buried, Model::sp3).empty());
+  CHECK(model_warning(clear, usual_index, .5, Source::buried, Model::sp3).find("0.5 mean free paths") !=
         std::string::npos);
-  CHECK(model_warning(dark, one_index, 10, Source::buried, Model::sp3).empty());
-  CHECK(model_warning(dark, one_index, 10, Source::buried, Model::diffusion).find("sp3 is not") != std::string::npos);
+  CHECK(model_warning(dark, usual_index, 10, Source::buried, Model::sp3).empty());
+  CHECK(model_warning(dark, usual_index, 10, Source::buried, Model::diffusion).find("sp3 is not") != std::string::npos);
   const std::vector<gpu::Optical> white = {medium(1, 0)}, none = {medium(0, 0)};
-  CHECK(model_warning(white, one_index, .1, Source::buried, Model::diffusion).empty());
-  CHECK(model_warning(none, one_index, .1, Source::buried, Model::sp3).empty());
-  CHECK(resolution_of(samples, none, one_index, Model::sp3).error == 0);
+  CHECK(model_warning(white, usual_index, .1, Source::buried, Model::diffusion).empty());
+  CHECK(model_warning(none, usual_index, .1, Source::buried, Model::sp3).empty());
+  CHECK(resolution_of(samples, none, usual_index, Model::sp3).error == 0);
 }
 
 TEST_CASE("light deep inside falls at the rate that isotropic scattering has") {
@@ -162,7 +162,7 @@ TEST_CASE("sweeps see of a dense body what was measured, and all of one that its
 TEST_CASE("sweeps settle slowly where elements are deep and little is absorbed") {
   const auto slow = [](float albedo, double depth) {
     const std::vector<gpu::Optical> optical = {medium(albedo, 1 - albedo)};
-    return resolution_of(std::vector<SurfaceSample>{{depth, 1.0}}, optical, one_index, Model::sp3).slow;
+    return resolution_of(std::vector<SurfaceSample>{{depth, 1.0}}, optical, usual_index, Model::sp3).slow;
   };
   CHECK(slow(.999f, 6) > .9);
   CHECK(slow(.999f, 6) <= 1);

@@ -36,6 +36,9 @@ TEST_CASE("edits without a layer are one, and that alone is written as edits") {
   CHECK(layers_json(plain) == Json::parse("[" + edit + "," + edit + "]"));
   CHECK(read("").empty());
   CHECK(layers_json({}) == Json::array());
+  const std::vector<EditLayer> empty{{.name = layer_name(1)}};
+  const Json empty_json = layers_json(empty);
+  CHECK(layers_from(JsonField(empty_json, "/edits")) == empty);
   const EditLayer named{.name = "Layer 2", .edits = plain[0].edits};
   const EditLayer hidden{.name = "Layer 1", .visible = false, .edits = plain[0].edits};
   const EditLayer weak{.name = "Layer 1", .opacity = 0.5f, .edits = plain[0].edits};

@@ -174,6 +174,25 @@ HOSTILE = [
     '{"add": ["point"]}',
     '{"add": "environment"}',
     '{"do": "undo"}',
+    '{"do": "redo"}',
+    '{"pick": [0.5]}',
+    '{"pick": {"x": 1}}',
+    '{"pick": [1e300, 0]}',
+    '{"paint": "red", "at": [[0.5, 0.5]], "begins": true}',
+    '{"paint": {}, "at": [[0.5, 0.5]], "begins": true}',
+    '{"paint": {"tool": "paint"}, "at": 7, "begins": true}',
+    '{"paint": {"tool": "paint"}, "at": [[0.5, 0.5]], "begins": "yes"}',
+    '{"paint": {"tool": [[[]]]}, "at": [[0.5, 0.5]]}',
+    '{"layers": {"layer": 0, "change": "remove all"}}',
+    '{"layers": {"layer": 7, "change": "add"}}',
+    '{"layers": {"layer": 0, "change": "name", "value": "\\u0000"}}',
+    '{"layers": [0]}',
+    '{"set": "/edits", "value": [{"operation": "add", "sigma_a": 1, "image": "/etc/passwd"}]}',
+    '{"set": "/cuts", "value": [{"type": "plane", "normal": [0, 0, 0], "offset": 0}]}',
+    '{"set": "/cuts", "value": 7}',
+    '{"set": "/materials/nobody", "value": "jade"}',
+    '{"set": "/materials", "value": ["jade"]}',
+    '{"set": "/solver/method", "value": "magic"}',
 ]
 
 
@@ -190,6 +209,47 @@ def test_hostile_messages_are_refused_and_change_nothing(ball):
     with served(ball) as (_, address):
         before, after = talk(address, conversation)
         assert after | {"camera": before["camera"]} == before
+
+
+def test_a_page_paints_cuts_and_is_told_why_there_is_no_picture(ball):
+    async def conversation(socket):
+        hello = (await heard(socket, lambda said: "hello" in said))["hello"]
+        await heard(socket, is_frame(True))
+        brush = {**hello["brush"], "layer": 0}
+        await socket.send_json({"paint": brush, "at": [[0.01, 0.01]], "begins": True})
+        beside = (await heard(socket, lambda said: "painted" in said))["painted"]
+        await socket.send_json({"paint": brush, "at": [[0.5, 0.5]], "begins": True})
+        await socket.send_json({"paint": brush, "at": [[0.55, 0.5], [0.6, 0.5]], "begins": False})
+        on_it = (await heard(socket, lambda said: "painted" in said))["painted"]
+        await socket.send_json({"do": "end"})
+        painted = (await heard(socket, lambda said: is_frame(False)(said) and said["frame"]["layers"]))["frame"]
+        await socket.send_json({"layers": {"layer": 0, "change": "visible", "value": False}})
+        assert (await heard(socket, lambda said: "layered" in said))["layered"]["layer"] == 0
+        await socket.send_json({"paint": brush, "at": [[0.5, 0.5]], "begins": True})
+        hidden = (await heard(socket, lambda said: "refused" in said))["refused"]
+        await socket.send_json({"set": "/solver/method", "value": "polygrid"})
+        trouble = await heard(socket, lambda said: "frame" in said and "trouble" in said["frame"])
+        await socket.send_json({"do": "undo"})
+        after = (await heard(socket, lambda said: "frame" in said and "width" in said["frame"]))["frame"]
+        await socket.send_json({"pick": [0.5, 0.5]})
+        picked = (await heard(socket, lambda said: "picked" in said))["picked"]
+        return hello, beside, on_it, painted, hidden, trouble["frame"]["trouble"], after, picked
+
+    with served(ball) as (_, address):
+        hello, beside, on_it, painted, hidden, trouble, after, picked = talk(address, conversation)
+        assert hello["bodies"] == []
+        assert hello["methods"][-1] == "shortest-path"
+        assert "polygrid" not in hello["methods"]
+        assert (beside["touched"], on_it["touched"]) == (False, True)
+        assert painted["layers"] == [{"name": "Layer 1", "visible": True, "opacity": 1.0, "strokes": 1}]
+        assert "edits" not in painted["scene"]
+        assert "'Layer 1' is hidden" in hidden
+        assert "polygrid" in trouble
+        assert after["scene"]["solver"]["method"] == "fem"
+        assert picked == ""
+        saved = json.load(urllib.request.urlopen(address.replace("/?", "/scene.json?"), timeout=PATIENCE))
+        (layer,) = saved["edits"]
+        assert len(layer["edits"][0]["stroke"]) > 1
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import quadgraph
 import two_cubes
 from baked import write_levels
 from quadgraph.base.errors import InputError
-from quadgraph.browser.frame_loop import Inbox, Message
+from quadgraph.browser.inbox import Inbox, Message
 from quadgraph.browser.shown_scene import ALLOWED, ShownScene
 from shapes import icosphere
 
@@ -52,8 +52,9 @@ def test_a_value_is_set_and_undone(shown):
         shown.undo()
 
 
-def test_the_material_of_a_page_is_that_of_all_bodies():
-    made = ShownScene(quadgraph.Scene(two_cubes.PATH, material="skin1", materials={"left": "jade"}, lights=[]))
+def test_a_material_is_that_of_all_bodies_or_of_the_one_that_is_named():
+    scene = quadgraph.Scene(two_cubes.PATH, material="skin1", materials={"left": "jade"}, lights=[])
+    made = ShownScene(scene, two_cubes.NAMES)
     before = made.document
     made.set("/material", "marble")
     assert made.document["material"] == "marble"
@@ -61,8 +62,51 @@ def test_the_material_of_a_page_is_that_of_all_bodies():
     made.undo()
     assert made.document == before
     assert before["materials"] == {"left": "jade"}
-    with pytest.raises(InputError, match="a page may set"):
-        made.set("/materials/left", "wax")
+    made.set("/materials/right", "wax")
+    assert made.document["materials"] == {"left": "jade", "right": "wax"}
+    for pointer, value, said in (
+        ("/materials/lid", "wax", "lid"),
+        ("/materials/0", "wax", "0"),
+        ("/materials", {"lid": "wax"}, "the file has left, right"),
+        ("/materials/left", "stolen.npz", "names no new files"),
+        ("/materials", {"left": "stolen.npz"}, "names no new files"),
+        ("/materials/left", {"volume": "stolen.npz"}, "names no new files"),
+    ):
+        with pytest.raises(InputError, match=said):
+            made.set(pointer, value)
+    plane = {"type": "plane", "normal": [0, 0, 1], "offset": 2.0}
+    with pytest.raises(InputError, match="one material for all bodies"):
+        made.set("/cuts", [plane])
+    made.set("/material", "wax")
+    made.set("/cuts", [plane])
+    with pytest.raises(InputError, match="one material for all bodies"):
+        made.set("/materials/left", "jade")
+    for _ in range(3):
+        made.undo()
+    assert made.document == before
+
+
+def test_a_body_is_put_elsewhere_by_parts_of_its_placement():
+    made = ShownScene(quadgraph.Scene(two_cubes.PATH, material="wax", lights=[]), two_cubes.NAMES)
+    before = made.document
+    for x in (1.0, 2.0):
+        made.set("/placements/right/position", [x, 0, 0])
+    made.set("/placements/right/rotation", [0, 0, 45])
+    assert made.document["placements"] == {"right": {"position": (2, 0, 0), "rotation": (0, 0, 45)}}
+    for pointer, value, said in (
+        ("/placements/lid/position", [1, 0, 0], "the file has left, right"),
+        ("/placements", {"lid": {}}, "the file has left, right"),
+        ("/placements/right/scale", 2, "scale"),
+        ("/placements/right/position", [1e9, 0, 0], "position"),
+        ("/placements/right/position", "up", "position"),
+        ("/placements/right/position/0", 1, "position"),
+        ("/placements/right", 7, "right"),
+    ):
+        with pytest.raises(InputError, match=said):
+            made.set(pointer, value)
+    made.undo()
+    made.undo()
+    assert made.document == before
 
 
 def test_a_slider_that_is_drawn_is_one_step(shown):
@@ -131,7 +175,9 @@ def test_added_lights_light_the_middle_alike(shown, stage):
         ("/material", {"volume": "stolen.npz"}, "names no new files"),
         ("/lights", [{"type": "environment", "file": "stolen.hdr", "radiance": 1}], "names no new files"),
         ("/lights/0/file", "stolen.hdr", "names no new files"),
-        ("/edits", [{"operation": "add", "sigma_a": 1, "image": "stolen.png"}], "names no new files"),
+        ("/edits", [], "a page may set"),
+        ("/cuts", [{"type": "plane", "normal": [0, 0, 0], "offset": 1}], "normal"),
+        ("/cuts", [{"type": "sphere", "centre": [0, 0, 0], "radius": 1}] * 300, "allowed are 256"),
         ("/lights", [{"type": "ambient", "irradiance": 1}] * 300, "allowed are 256"),
         ("/picture/width", 5000, "64 to 2048"),
         ("/picture/width", True, "64 to 2048"),
@@ -151,7 +197,8 @@ def test_what_a_page_may_not_changes_nothing(shown, pointer, value, said):
 
 def test_all_that_is_allowed_is_there(shown):
     for pointer in ALLOWED:
-        found = shown.document | {"picture": {"roughness": 0.3} | shown.document["picture"]}  # left out by itself
+        left_out = {"picture": {"roughness": 0.3} | shown.document["picture"], "materials": {}, "placements": {}}
+        found = shown.document | left_out
         for name in pointer.split("/")[1:]:
             found = found[name]
         shown.set(pointer, found)
@@ -195,3 +242,17 @@ def test_gestures_that_wait_become_one():
         inbox.put(Message({"set": f"/lights/{number}"}, refused.append))
     assert len(inbox.take(0)) == 256
     assert len(refused) == 44
+    assert "waiting already" in refused[0]["refused"]
+
+
+def test_places_of_a_stroke_that_wait_become_one_message_of_at_most_64():
+    inbox, brush = Inbox(lambda: None), {"tool": "paint"}
+    inbox.put(Message({"paint": brush, "at": [[0, 0]], "begins": True}, print))
+    for number in range(70):
+        inbox.put(Message({"paint": brush, "at": [[number, 0]], "begins": False}, print))
+    inbox.put(Message({"paint": brush, "at": "nowhere", "begins": False}, print))
+    inbox.put(Message({"paint": {"tool": "erase"}, "at": [[1, 0]], "begins": False}, print))
+    found = [message.content for message in inbox.take(0)]
+    assert [len(content["at"]) for content in found] == [64, 7, 7, 1]
+    assert found[0]["begins"] is True
+    assert found[1]["at"][0] == [63, 0]

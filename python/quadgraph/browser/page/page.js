@@ -13,6 +13,7 @@ let said = null;  // of the last frame
 let selected = 0;  // light
 let drag = null;
 let url = null;  // of the picture
+const picks = [];  // where the clicks were whose body is asked for, pixels
 
 function send(message) {
   if (socket && socket.readyState === WebSocket.OPEN) socket.send(JSON.stringify(message));
@@ -41,13 +42,21 @@ function connect() {
 function hear(message) {
   if (message.hello) greet(message.hello);
   if (message.frame) tell(message.frame);
-  if (message.refused) trouble(message.refused);
+  if ("picked" in message) choose(message.picked, picks.shift());
+  if (message.painted) painted(message.painted);
+  if (message.layered) layered(message.layered);
+  if (message.refused) {
+    stroke = null;
+    trouble(message.refused);
+    if (said) controls(said);
+  }
 }
 
 function greet(hello) {
   document.title = $("file").textContent = hello.file;
   fill($("material"), ["", ...hello.materials], (name) => name || "(as text)");
   fill($("tone"), hello.tones, (name) => name);
+  greetBrush(hello);
 }
 
 function fill(select, values, label) {
@@ -105,7 +114,7 @@ function put(id, value, text) {
 }
 
 function controls(frame) {
-  const scene = frame.scene, picture = scene.picture, material = String(scene.material);
+  const scene = frame.scene, picture = scene.picture, material = materialOf(scene);
   const named = [...$("material").options].some((option) => option.value === material);
   put("material", named ? material : "");
   put("material-text", material);
@@ -121,6 +130,7 @@ function controls(frame) {
   put("ground", picture.ground);
   $("undo").disabled = !frame.undo;
   lights(scene.lights);
+  controlsOfBrush(frame);
 }
 
 function strength(light) {
@@ -178,12 +188,12 @@ function brightness(i, made, stops) {
 
 function colour(i, text) {
   const light = said.scene.lights[i], most = Math.max(...channels(light)) || 1;
-  const linear = [1, 3, 5].map((k) => fromSrgb(parseInt(text.slice(k, k + 2), 16) / 255));
-  const top = Math.max(...linear) || 1;
-  set(`/lights/${i}/${strength(light)}`, linear.map((c) => (c / top) * most));
+  const rgb = linear(text), top = Math.max(...rgb) || 1;
+  set(`/lights/${i}/${strength(light)}`, rgb.map((c) => (c / top) * most));
 }
 
 const fromSrgb = (c) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4);
+const linear = (text) => [1, 3, 5].map((k) => fromSrgb(parseInt(text.slice(k, k + 2), 16) / 255));
 const toSrgb = (c) => (c <= 0.0031308 ? 12.92 * c : 1.055 * c ** (1 / 2.4) - 0.055);
 const hex = (rgb) => "#" + rgb.map((c) => Math.round(255 * toSrgb(c)).toString(16).padStart(2, "0")).join("");
 
@@ -194,31 +204,49 @@ function sendSize() {
   set("/picture/height", fit(box.height));
 }
 
+// By pixels.
+function orbit(right, up) {
+  send({ gesture: "orbit", right: DEGREES_PER_PIXEL * right, up: DEGREES_PER_PIXEL * up });
+}
+
 function gestures() {
   const view = $("view");
   view.addEventListener("contextmenu", (event) => event.preventDefault());
   view.addEventListener("pointerdown", (event) => {
     view.focus();
     view.setPointerCapture(event.pointerId);
-    drag = { x: event.clientX, y: event.clientY, pan: event.button !== 0, light: event.shiftKey || event.ctrlKey };
+    const light = event.shiftKey || event.ctrlKey;
+    drag = { x: event.clientX, y: event.clientY, pan: event.button !== 0, light };
+    if (!said || drag.pan || light) return;
+    if (paints) beginStroke(event);
+    else drag.clicks = hello.bodies.length > 1;
   });
   view.addEventListener("pointermove", (event) => {
     if (!drag) return;
+    if (drag.paint) return leadStroke(event);
     const right = event.clientX - drag.x, up = drag.y - event.clientY;
+    if (drag.clicks && Math.hypot(right, up) < CLICK_PIXELS) return;
+    drag.clicks = false;
     Object.assign(drag, { x: event.clientX, y: event.clientY });
     if (drag.pan) {
       const height = view.clientHeight;
       send({ gesture: "pan", right: right / height, up: up / height });
-    } else {
-      const turned = { right: DEGREES_PER_PIXEL * right, up: DEGREES_PER_PIXEL * up };
-      send(drag.light ? { gesture: "turn", light: selected, ...turned } : { gesture: "orbit", ...turned });
-    }
+    } else if (drag.light) {
+      send({ gesture: "turn", light: selected, right: DEGREES_PER_PIXEL * right, up: DEGREES_PER_PIXEL * up });
+    } else orbit(right, up);
   });
   const end = () => {
-    if (drag) send({ do: "end" });
+    if (drag && !endStroke()) send({ do: "end" });
     drag = null;
   };
-  view.addEventListener("pointerup", end);
+  view.addEventListener("pointerup", (event) => {
+    if (drag && drag.clicks) {
+      const box = view.getBoundingClientRect();
+      picks.push([event.clientX - box.left, event.clientY - box.top]);
+      send({ pick: place(event) });
+    }
+    end();
+  });
   view.addEventListener("pointercancel", end);
   view.addEventListener("wheel", (event) => {
     event.preventDefault();
@@ -229,11 +257,14 @@ function gestures() {
     const steps = { "+": 1, "=": 1, "-": -1, PageUp: 1, PageDown: -1 }[event.key];
     if (turn) send({ gesture: "orbit", right: turn[0], up: turn[1] });
     else if (steps) send({ gesture: "zoom", up: steps });
+    else if (event.key === "p" && !event.ctrlKey && !event.metaKey) take(!paints);
     else return;
     event.preventDefault();
   });
   document.addEventListener("keydown", (event) => {
-    if (event.key === "z" && (event.ctrlKey || event.metaKey) && event.target.type !== "text") send({ do: "undo" });
+    if (!(event.ctrlKey || event.metaKey) || event.target.type === "text") return;
+    if (event.key === "z") send({ do: "undo" });
+    if (event.key === "y") send({ do: "redo" });
   });
 }
 
@@ -246,8 +277,8 @@ function slider(id, change) {
 }
 
 function listen() {
-  $("material").addEventListener("change", () => $("material").value && set("/material", $("material").value));
-  $("material-text").addEventListener("change", () => set("/material", $("material-text").value));
+  $("material").addEventListener("change", () => $("material").value && set(materialPlace(), $("material").value));
+  $("material-text").addEventListener("change", () => set(materialPlace(), $("material-text").value));
   slider("roughness", (value) => set("/picture/roughness", value));
   slider("twist", (degrees) => {
     const others = said.scene.deformation.filter((step) => step.type !== "twist");
@@ -258,6 +289,7 @@ function listen() {
   $("tone").addEventListener("change", () => set("/picture/tone", $("tone").value));
   $("ground").addEventListener("change", () => set("/picture/ground", $("ground").checked));
   $("add-light").addEventListener("click", () => send({ add: $("new-light").value }));
+  listenBrush();
   $("undo").addEventListener("click", () => send({ do: "undo" }));
   $("restore").addEventListener("click", () => send({ do: "restore" }));
   $("save-image").addEventListener("click", () => {
@@ -273,6 +305,9 @@ function listen() {
   });
 }
 
-gestures();
-listen();
-connect();
+// Once brush.js is there, too.
+addEventListener("DOMContentLoaded", () => {
+  gestures();
+  listen();
+  connect();
+});

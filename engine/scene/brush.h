@@ -1,8 +1,14 @@
 // Painting a material onto a body.
 #pragma once
 
-#include "engine/app/material_look.h"
-#include "engine/app/mirror.h"
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "engine/base/names.h"
+#include "engine/scene/material_look.h"
+#include "engine/scene/mirror.h"
 #include "engine/scene/scene.h"
 
 namespace quadgraph {
@@ -11,12 +17,22 @@ namespace quadgraph {
 struct Touch {
   TouchPlace here;
   std::optional<TouchPlace> mirrored{};
+  std::string body{};  // its name; empty of a file of one
 };
 
 // Where the brush touches what was picked in a picture seen from `camera`.
 TouchPlace touched(const Picked& picked, const Camera& camera);
 
 enum class BrushTool { paint, erase, pick };
+
+template <>
+struct Names<BrushTool> {
+  static constexpr std::string_view what = "tool";
+  static constexpr auto values =
+      std::to_array<Named<BrushTool>>({{BrushTool::paint, "paint", "a stroke along the drag"},
+                                       {BrushTool::erase, "erase", "takes away the last stroke there"},
+                                       {BrushTool::pick, "pick", "takes up the colour that is there"}});
+};
 
 struct Brush {
   bool on = false;  // a left drag paints
@@ -39,6 +55,14 @@ struct Brush {
   void begin(Scene& scene, std::size_t layer, const Touch& touch) const;
   void lead(Scene& scene, std::size_t layer, const Touch& touch) const;
 
+  // What a touch does by the tool, to `layer` of the scene, where one is made if there is none. Whether a drag goes on
+  // with it: picking up a colour ends with the touch, and paints next. Throws InputError, and changes nothing, where
+  // the layer is hidden.
+  bool touch(Scene& scene, std::size_t& layer, const Touch& touch);
+
+  // And on the way of that drag.
+  void go_on(Scene& scene, std::size_t layer, const Touch& touch) const;
+
   // Takes away the last stroke or stamp of the layer that reaches there, on both its sides, if there is one.
   static void erase(EditLayer& layer, const Touch& touch);
 
@@ -47,7 +71,7 @@ struct Brush {
   void pick(const Scene& scene, const Touch& touch);
 
  private:
-  Edit stroke_on(const Scene& scene) const;
+  Edit stroke_on(const Scene& scene, const std::string& body) const;
   Edit stroke_at(const Scene& scene, const Touch& touch) const;
   Placement placement_at(const TouchPlace& place) const;
 };

@@ -1,4 +1,4 @@
-#include "engine/app/brush.h"
+#include "engine/scene/brush.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,9 @@
 #include <glm/geometric.hpp>
 #include <iterator>
 
+#include "engine/base/error.h"
 #include "engine/optics/material.h"
+#include "engine/scene/layers.h"
 
 namespace quadgraph {
 namespace {
@@ -52,11 +54,11 @@ Brush Brush::for_body(float radius) {
 }
 
 // Colour and distance on their way from the material's to the brush's, as coefficients.
-Edit Brush::stroke_on(const Scene& scene) const {
+Edit Brush::stroke_on(const Scene& scene, const std::string& body) const {
   if (!by_colour) return edit;
   MaterialLook put = look;
   put.eta = default_eta;
-  if (const auto& own = look_of(scene.material)) {
+  if (const auto& own = look_of(said_material(scene, body))) {
     put.eta = own->eta;
     put.colour = glm::mix(own->colour, look.colour, strength);
     put.distance = own->distance * std::pow(look.distance / own->distance, strength);
@@ -79,7 +81,7 @@ Placement Brush::placement_at(const TouchPlace& place) const {
 }
 
 Edit Brush::stroke_at(const Scene& scene, const Touch& touch) const {
-  Edit made = stroke_on(scene);
+  Edit made = stroke_on(scene, touch.body);
   if (touch.mirrored) made.mirrored.emplace();
   if (stamps()) {
     made.radius = 0;
@@ -109,6 +111,31 @@ void Brush::lead(Scene& scene, std::size_t layer, const Touch& touch) const {
   }
 }
 
+bool Brush::touch(Scene& scene, std::size_t& layer, const Touch& touch) {
+  if (tool == BrushTool::pick) {
+    pick(scene, touch);
+    tool = BrushTool::paint;
+    return false;
+  }
+  if (scene.layers.empty()) add_layer(scene, layer);
+  EditLayer& active = scene.layers.at(layer);
+  if (!active.visible) {
+    throw InputError("'" + active.name + "' is hidden: show it by its eye, or choose another layer, to paint or erase");
+  }
+  if (tool == BrushTool::paint) {
+    begin(scene, layer, touch);
+  } else {
+    erase(active, touch);
+  }
+  return true;
+}
+
+void Brush::go_on(Scene& scene, std::size_t layer, const Touch& touch) const {
+  if (layer >= scene.layers.size()) return;
+  if (tool == BrushTool::paint) lead(scene, layer, touch);
+  if (tool == BrushTool::erase) erase(scene.layers[layer], touch);
+}
+
 void Brush::erase(EditLayer& layer, const Touch& touch) {
   auto& edits = layer.edits;
   const auto last =
@@ -122,7 +149,7 @@ void Brush::pick(const Scene& scene, const Touch& touch) {
     const bool whole = each.operation == Edit::Operation::set && each.sigma_a && each.sigma_s_prime;
     return whole && reaches(each, touch.here.at);
   });
-  const auto& own = look_of(scene.material);
+  const auto& own = look_of(said_material(scene, touch.body));
   if (own) look = *own;
   if (last == seen.rend()) return;
   gpu::Material painted{};

@@ -3,9 +3,8 @@
 
 #include <glm/geometric.hpp>
 
-#include "engine/app/brush.h"
-#include "engine/app/history.h"
-#include "engine/app/layers.h"
+#include "engine/scene/brush.h"
+#include "engine/scene/layers.h"
 
 using namespace quadgraph;
 
@@ -18,13 +17,13 @@ std::string names_of(const Scene& scene) {
 }
 
 // Of two layers, each with a stroke at the origin: red, and over it green.
-struct Painted {
+struct TwoStrokes {
   Scene scene;
   Brush brush = Brush::for_body(15);
   std::size_t active = 0;
   glm::vec3 red, green{0.05f, 0.4f, 0.05f};
 
-  Painted() : red(brush.look.colour) {
+  TwoStrokes() : red(brush.look.colour) {
     scene.material = "wholemilk";
     for (const glm::vec3& colour : {red, green}) {
       add_layer(scene, active);
@@ -78,24 +77,8 @@ TEST_CASE("layers are added above the active one, moved and removed with their s
   CHECK(scene.layers.size() == most_layers);
 }
 
-TEST_CASE("undo brings a removed layer back, with its strokes, name and opacity") {
-  Painted painted;
-  painted.scene.layers[1].name = "Veins";
-  painted.scene.layers[1].opacity = 0.5f;
-  History history(painted.scene);
-  const Scene before = painted.scene;
-  remove_layer(painted.scene, painted.active);
-  history.note(painted.scene);
-  CHECK(painted.scene.layers.size() == 1);
-  CHECK(history.undo(painted.scene) == before);
-  CHECK(history.redo(before) == painted.scene);
-  painted.scene.layers[0].visible = false;
-  history.note(painted.scene);
-  CHECK(history.undo(painted.scene).layers[0].visible);
-}
-
 TEST_CASE("the eraser takes from one layer, and the picker from what is seen, the topmost first") {
-  Painted painted;
+  TwoStrokes painted;
   CHECK(glm::distance(painted.picked(), painted.green) < 0.02f);
   painted.scene.layers[1].visible = false;
   CHECK(glm::distance(painted.picked(), painted.red) < 0.02f);

@@ -1,9 +1,9 @@
-#include "engine/app/material_look.h"
+#include "engine/scene/material_look.h"
 
 #include <algorithm>
 #include <glm/common.hpp>
 
-#include "engine/app/panel_widgets.h"
+#include "engine/base/text.h"
 #include "engine/optics/colour.h"
 #include "engine/optics/material.h"
 

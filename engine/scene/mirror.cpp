@@ -1,4 +1,4 @@
-#include "engine/app/mirror.h"
+#include "engine/scene/mirror.h"
 
 #include <cmath>
 #include <glm/geometric.hpp>

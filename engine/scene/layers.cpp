@@ -1,4 +1,4 @@
-#include "engine/app/layers.h"
+#include "engine/scene/layers.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,0 +1,214 @@
+"""What a page paints and cuts: by the window's brush, layer by layer, and back."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import quadgraph
+import two_cubes
+from baked import write_levels
+from quadgraph.base.errors import InputError
+from quadgraph.browser import shown_scene
+from quadgraph.browser.shown_scene import ShownScene
+from shapes import icosphere
+
+MIDDLE, BESIDE = [0.5, 0.5], [0.01, 0.01]
+
+
+@pytest.fixture(scope="module")
+def ball(tmp_path_factory):
+    return write_levels(tmp_path_factory.mktemp("bodies") / "ball.qgraph", [icosphere(2, 10), icosphere(1, 10)])
+
+
+@pytest.fixture(scope="module")
+def stage(ball):
+    with quadgraph.Stage(device="cpu") as made:
+        made.show(quadgraph.Scene(ball))
+        yield made
+
+
+@pytest.fixture
+def shown(ball, stage):
+    picture = {"width": 96, "height": 64, "ground": False}
+    camera = {"azimuth": 0, "elevation": 0}
+    scene = quadgraph.Scene(ball, material="wholemilk", lights=["ambient:1"], picture=picture, camera=camera)
+    made = ShownScene(scene)
+    stage.show(made.scene)
+    return made
+
+
+@pytest.fixture
+def hand(shown, stage):
+    """A hand that paints: places, and what it changes of the brush."""
+
+    def paint(*places, begins=True, layer=0, **brush):
+        stage.show(shown.scene)
+        return shown.paint(stage, {**stage.usual_brush, "layer": layer, **brush}, list(places), begins)
+
+    return paint
+
+
+def names(shown):
+    return [layer["name"] for layer in shown.layers]
+
+
+def strokes(shown):
+    return [layer["strokes"] for layer in shown.layers]
+
+
+def test_a_stroke_lies_where_the_hand_went_and_is_one_step(shown, stage, hand):
+    before = shown.document
+    state = hand(MIDDLE)
+    assert state["touched"]
+    hand(*([0.5 + 0.02 * k, 0.5] for k in range(1, 6)), begins=False)
+    (edit,) = shown.document["edits"]
+    points = np.array(edit["stroke"])
+    assert np.linalg.norm(points, axis=1) == pytest.approx(10, abs=0.4)  # on the ball
+    assert points[0] == pytest.approx([0, 0, 10], abs=0.4)
+    assert np.all(np.diff(points[:, 0]) > 0)
+    assert strokes(shown) == [1]
+    shown.undo()
+    assert shown.document == before
+    shown.redo()
+    assert shown.document["edits"] == [edit]
+    assert not shown.can_redo
+    shown.undo()
+    hand(MIDDLE)
+    assert not shown.can_redo  # what was taken back is gone once something else is done
+    with pytest.raises(InputError, match="nothing to redo"):
+        shown.redo()
+
+
+def test_paint_changes_the_light_there_and_undo_gives_it_back(shown, stage, hand):
+    def middle():
+        stage.show(shown.scene)
+        stage.engine.solve(correction=False)
+        return stage.render().scattered[32, 48]
+
+    clean = middle()
+    hand(MIDDLE, radius=4, depth=4, falloff=1)
+    painted = middle()
+    assert painted[1] < 0.6 * clean[1]  # red lets no green back
+    hand(MIDDLE, tool="erase")
+    assert middle() == pytest.approx(clean, rel=1e-6)
+    shown.undo()
+    assert middle() == pytest.approx(painted, rel=1e-6)
+
+
+def test_what_begins_beside_the_body_paints_nothing(shown, hand):
+    before = shown.document
+    assert not hand(BESIDE, MIDDLE)["touched"]
+    assert shown.document == before
+    assert not shown.can_undo
+
+
+def test_a_colour_is_picked_up(shown, hand):
+    colour = [0.1, 0.5, 0.2]
+    hand(MIDDLE, colour=colour)
+    state = hand(MIDDLE, tool="pick")
+    assert state["colour"] == pytest.approx(colour, abs=0.03)
+    assert strokes(shown) == [1]
+
+
+def test_layers_are_added_named_hidden_moved_and_removed(shown, stage, hand):
+    def change(what, layer=0, **value):
+        stage.show(shown.scene)
+        return shown.relayer(stage, {"layer": layer, "change": what, **value})["layer"]
+
+    assert change("add") == 0
+    assert change("add") == 1
+    assert hand(MIDDLE, layer=1)["layer"] == 1
+    assert change("name", 1, value="Veins") == 1
+    change("opacity", 1, value=0.5)
+    change("opacity", 1, value=0.25)
+    assert names(shown) == ["Layer 1", "Veins"]
+    assert strokes(shown) == [0, 1]
+    assert shown.layers[1]["opacity"] == pytest.approx(0.25)
+    shown.undo()
+    assert shown.layers[1]["opacity"] == 1  # a slider that is drawn is one step
+    change("visible", 1, value=False)
+    before = shown.document
+    with pytest.raises(InputError, match="'Veins' is hidden"):
+        hand(MIDDLE, layer=1)
+    assert shown.document == before
+    assert change("down", 1) == 0
+    assert names(shown) == ["Veins", "Layer 1"]
+    assert change("remove", 0) == 0
+    assert names(shown) == ["Layer 1"]
+    shown.undo()
+    assert names(shown) == ["Veins", "Layer 1"]
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        ({"radius": -1}, "radius"),
+        ({"radius": "1"}, "radius"),
+        ({"radius": 1e9}, "radius"),
+        ({"depth": 0}, "depth"),
+        ({"colour": [2, 0, 0]}, "colour"),
+        ({"colour": [1, 0]}, "colour"),
+        ({"strength": 2}, "strength"),
+        ({"distance": 0}, "distance"),
+        ({"tool": "hammer"}, "tool"),
+        ({"layer": 1}, "layer"),
+        ({"layer": -1}, "layer"),
+        ({"layer": 0.5}, "layer"),
+        ({"image": "stolen.png"}, "image"),
+    ],
+)
+def test_a_wrong_brush_is_refused_by_name(shown, hand, wrong, said):
+    before = shown.document
+    with pytest.raises(InputError, match=said):
+        hand(MIDDLE, **wrong)
+    assert shown.document == before
+
+
+@pytest.mark.parametrize("places", [[], [[0.5]], [[0.5, "1"]], [[0.5, True]], "here", None, [[1e9, 0]], [MIDDLE] * 65])
+def test_wrong_places_are_refused(shown, stage, places):
+    with pytest.raises(InputError, match="at"):
+        shown.paint(stage, {**stage.usual_brush, "layer": 0}, places, True)
+    with pytest.raises(InputError, match="pick"):
+        shown.body_at(stage, places)
+
+
+def test_wrong_changes_of_layers_are_refused(shown, stage):
+    for change in ({"change": "burn"}, {"change": "name"}, {"change": ["add"]}, {}, "add", {"change": "visible"}):
+        with pytest.raises(InputError):
+            shown.relayer(stage, {"layer": 0, **change} if isinstance(change, dict) else change)
+
+
+def test_strokes_have_an_end(shown, hand, monkeypatch):
+    monkeypatch.setattr(shown_scene, "MOST_STROKE_POINTS", 5)
+    hand(MIDDLE)
+    hand(MIDDLE)
+    before = shown.document
+    with pytest.raises(InputError, match="allowed are 5"):
+        hand(MIDDLE)
+    assert shown.document == before
+
+
+def test_cuts_are_shown_by_shortest_path_and_then_by_what_was_before(shown):
+    before = shown.document
+    plane = {"type": "plane", "normal": [0, 0, 1], "offset": 2.0}
+    shown.set("/cuts", [plane])
+    assert shown.document["solver"]["method"] == "shortest-path"
+    with pytest.raises(InputError, match="shortest-path alone"):
+        shown.set("/solver/method", "fem")
+    shown.set("/cuts", [{**plane, "offset": 3.0}])
+    assert shown.document["cuts"][0]["offset"] == 3.0
+    shown.undo()
+    assert shown.document == before
+    shown.redo()
+    shown.set("/cuts", [])
+    assert shown.document == before
+
+
+def test_a_click_finds_the_body(stage):
+    made = ShownScene(quadgraph.Scene(two_cubes.PATH, material="wax", camera={"azimuth": 0, "elevation": 0}))
+    with quadgraph.Stage(device="cpu") as two:
+        two.show(made.scene)
+        found = [made.body_at(two, [x, 0.5]) for x in (0.3, 0.7)]
+        assert found == ["left", "right"]
+        assert made.body_at(two, BESIDE) is None
