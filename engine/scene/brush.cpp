@@ -139,7 +139,7 @@ void Brush::go_on(Scene& scene, std::size_t layer, const Touch& touch) const {
 void Brush::erase(EditLayer& layer, const Touch& touch) {
   auto& edits = layer.edits;
   const auto last =
-      std::find_if(edits.rbegin(), edits.rend(), [&](const Edit& edit) { return reaches(edit, touch.here.at); });
+      std::find_if(edits.rbegin(), edits.rend(), [&](const Edit& stroke) { return reaches(stroke, touch.here.at); });
   if (last != edits.rend()) edits.erase(std::next(last).base());
 }
 

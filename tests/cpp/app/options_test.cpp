@@ -50,7 +50,8 @@ TEST_CASE("lights by name stand about the view, and what is lit has no ground of
 
 TEST_CASE("every option of the table is one of the command line and does what its text says") {
   for (const SceneOption& option : scene_options()) {
-    if (!option.on_command_line) continue;
+    // A normal map must be a file: tests/python/engine/test_normal_maps.py gives the program one.
+    if (!option.on_command_line || option.name == "normal-map") continue;
     CAPTURE(option.name);
     const std::string name = "--" + std::string(option.name);
     if (option.kind == OptionKind::flag) {
