@@ -31,9 +31,9 @@ TEST_CASE("an edit everywhere multiplies, adds or sets what it names, in order")
   CHECK(after({{.operation = multiply, .sigma_a = glm::vec3(2)}}).sigma_s_prime == base.sigma_s_prime);
   CHECK(after({{.operation = add, .sigma_s_prime = glm::vec3(-2, 1, 0)}}).sigma_s_prime == glm::vec3(0, 3, 3));
   CHECK(after({{.operation = set, .sigma_a = glm::vec3(5)}}).sigma_a == glm::vec3(5));
-  const Edit twice{.operation = multiply, .sigma_a = glm::vec3(2)}, plus{.operation = add, .sigma_a = glm::vec3(1)};
-  CHECK(after({twice, plus}).sigma_a.x == doctest::Approx(1.2f));
-  CHECK(after({plus, twice}).sigma_a.x == doctest::Approx(2.2f));
+  const Edit doubled{.operation = multiply, .sigma_a = glm::vec3(2)}, more{.operation = add, .sigma_a = glm::vec3(1)};
+  CHECK(after({doubled, more}).sigma_a.x == doctest::Approx(1.2f));
+  CHECK(after({more, doubled}).sigma_a.x == doctest::Approx(2.2f));
 }
 
 TEST_CASE("a stroke reaches as far as its radius, fading over its softness, between its depths") {

@@ -36,7 +36,8 @@ def linear(codes: np.ndarray) -> np.ndarray:
 
 def test_a_transparent_png_laid_over_white_is_the_picture_on_white(tmp_path):
     clear, white = tmp_path / "clear.png", tmp_path / "white.png"
-    smooth = ("--transmission-roughness", 0)  # at rough edges colours differ in what they let through, as one alpha cannot
+    # Channels differ in what they let through at rough edges, as one alpha cannot.
+    smooth = ("--transmission-roughness", 0)
     assert render("--background", "transparent", "-o", clear, *smooth) == 0
     assert render("--background", "white", "-o", white, *smooth) == 0
     rgba, rgb = pixels(clear), pixels(white)
