@@ -17,7 +17,7 @@ SurfaceScene scene;
 #include "gather/leaving.glsl"
 
 const float PI = 3.14159265;
-const float CLEAR_DEPTH = 16.0;  // mean free paths over the whole body
+const float CLEAR_DEPTH = 7.0;  // mean free paths over the whole body
 
 struct Sample {
   uint face;
