@@ -2,9 +2,7 @@
 
 #include <imgui.h>
 
-#include <cstdarg>
 #include <cstdint>
-#include <cstdio>
 
 #include "engine/render/picture/tone_map.h"
 #include "shaders/display/tone_curve.h"

@@ -62,6 +62,8 @@ struct Level {
   std::uint32_t node_count() const { return static_cast<std::uint32_t>(nodes.size()); }
 };
 
+inline constexpr std::uint32_t most_texture_side = 4096;  // texels
+
 // The surface that is drawn, tied to the outside faces of level 0 where there is one.
 struct DisplayMesh {
   std::span<const glm::vec3> vertices;  // mm

@@ -242,7 +242,6 @@ void validate_seen_once(std::span<const Level> levels, const std::string& file) 
 
 void validate_texture(const DisplayMesh& display, const Place& place) {
   constexpr float farthest = 1e6f;
-  constexpr std::uint32_t most = 4096;  // texels a side
   expect_rows(place, "texture_places", display.texture_places.size(), display.vertices.size());
   check_finite(place, "texture_places", display.texture_places);
   for (std::size_t i = 0; i < display.texture_places.size(); ++i) {
@@ -250,10 +249,10 @@ void validate_texture(const DisplayMesh& display, const Place& place) {
     if (at.z != 0 && at.z != 1) place.fail("texture_places", i, "the third number is neither 0 nor 1");
     if (std::max(std::abs(at.x), std::abs(at.y)) > farthest) place.fail("texture_places", i, "beyond 1e6");
   }
-  if (std::max(display.texture_columns, display.texture_rows) > most) {
+  if (std::max(display.texture_columns, display.texture_rows) > most_texture_side) {
     fail_format(place.file, place.prefix + "normal_texture",
                 "found " + std::to_string(display.texture_columns) + "x" + std::to_string(display.texture_rows) +
-                    " texels, allowed are 1 to " + std::to_string(most) + " a side");
+                    " texels, allowed are 1 to " + std::to_string(most_texture_side) + " a side");
   }
 }
 

@@ -9,15 +9,14 @@
 namespace quadgraph {
 namespace {
 
-constexpr int facets = 16;             // of each of the two numbers that a facet is drawn by
-constexpr double least_cosine = 1e-3;  // of a view
+constexpr int facets = 16;  // of each of the two numbers that a facet is drawn by
 
 }  // namespace
 
 double rough_reflectance(double cosine, double alpha, double eta) {
   if (eta == 1.0) return 0.0;
   if (alpha == 0.0) return 1 - fresnel_transmittance(cosine, eta);
-  const auto z = static_cast<float>(std::max(cosine, least_cosine)), rough = static_cast<float>(alpha);
+  const float z = std::max(static_cast<float>(cosine), gpu::LEAST_SEEN_COSINE), rough = static_cast<float>(alpha);
   const glm::vec3 way(std::sqrt(std::max(1 - z * z, 0.0f)), 0, z);
   double sum = 0;
   for (int i = 0; i < facets; ++i) {

@@ -5,15 +5,9 @@ namespace {
 
 constexpr std::uint32_t most_points = 16;  // of a lattice, a side
 
-glm::dvec3 precise(const JsonField& field) {
-  if (!field.value().is_array() || field.value().size() != 3) field.refuse("three numbers");
-  const auto parts = field.items();
-  return {parts[0].number(), parts[1].number(), parts[2].number()};
-}
-
 std::vector<glm::dvec3> points_from(const JsonField& field) {
   std::vector<glm::dvec3> points;
-  for (const JsonField& point : field.items()) points.push_back(precise(point));
+  for (const JsonField& point : field.items()) points.push_back(point.precise_triple());
   return points;
 }
 
@@ -24,8 +18,8 @@ glm::uvec3 counts_from(const JsonField& field, std::uint32_t low, std::uint32_t 
 }
 
 void axis_from(const JsonField& field, Deformer& deformer) {
-  if (const auto axis = field.find("axis")) deformer.axis = precise(*axis);
-  if (const auto centre = field.find("centre")) deformer.centre = precise(*centre);
+  if (const auto axis = field.find("axis")) deformer.axis = axis->precise_triple();
+  if (const auto centre = field.find("centre")) deformer.centre = centre->precise_triple();
 }
 
 void range_from(const JsonField& field, Deformer& deformer) {
@@ -43,7 +37,7 @@ void range_from(const JsonField& field, Deformer& deformer) {
 void turning_from(const JsonField& field, Deformer& deformer) {
   if (deformer.kind == DeformerKind::bend) {
     field.allow({"type", "axis", "centre", "range", "range_mm", "degrees", "towards"});
-    if (const auto towards = field.find("towards")) deformer.towards = precise(*towards);
+    if (const auto towards = field.find("towards")) deformer.towards = towards->precise_triple();
   } else {
     field.allow({"type", "axis", "centre", "range", "range_mm", "degrees"});
   }
@@ -62,9 +56,9 @@ void transform_from(const JsonField& field, Deformer& deformer) {
   axis_from(field, deformer);
   if (const auto degrees = field.find("degrees")) deformer.degrees = degrees->number();
   if (const auto scale = field.find("scale")) {
-    deformer.scale = scale->value().is_array() ? precise(*scale) : glm::dvec3(scale->number());
+    deformer.scale = scale->value().is_array() ? scale->precise_triple() : glm::dvec3(scale->number());
   }
-  if (const auto translate = field.find("translate")) deformer.translate = precise(*translate);
+  if (const auto translate = field.find("translate")) deformer.translate = translate->precise_triple();
 }
 
 void lattice_from(const JsonField& field, Deformer& deformer) {
@@ -74,7 +68,7 @@ void lattice_from(const JsonField& field, Deformer& deformer) {
   if (const auto basis = field.find("basis")) deformer.basis = basis->named<LatticeBasis>();
   if (const auto box = field.find("box")) {
     box->allow({"low", "high"});
-    deformer.box = RestBox{precise(box->at("low")), precise(box->at("high"))};
+    deformer.box = RestBox{box->at("low").precise_triple(), box->at("high").precise_triple()};
   }
 }
 

@@ -135,6 +135,12 @@ glm::vec3 JsonField::triple() const {
   return {parts[0].real(), parts[1].real(), parts[2].real()};
 }
 
+glm::dvec3 JsonField::precise_triple() const {
+  if (!value_->is_array() || value_->size() != 3) refuse("three numbers");
+  const auto parts = items();
+  return {parts[0].number(), parts[1].number(), parts[2].number()};
+}
+
 glm::vec3 JsonField::rgb() const {
   if (value_->is_array()) return triple();
   if (!value_->is_number()) refuse("a number or three, for red, green and blue");

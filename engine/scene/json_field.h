@@ -52,7 +52,8 @@ class JsonField {
   template <HasNames Enum>
   Enum named() const;  // the value of one of its names
   glm::vec3 triple() const;
-  glm::vec3 rgb() const;  // one number or three
+  glm::dvec3 precise_triple() const;  // as they stand
+  glm::vec3 rgb() const;              // one number or three
 
   // `read()`, with the path put before the message of an InputError of other code.
   template <typename Read>

@@ -72,20 +72,14 @@ std::map<std::string, std::string> materials_from(const JsonField& field) {
   return materials;
 }
 
-glm::dvec3 numbers_from(const JsonField& field) {
-  const auto parts = field.items();
-  if (parts.size() != 3) field.refuse("three numbers");
-  return {parts[0].number(), parts[1].number(), parts[2].number()};
-}
-
 BodyPoses placements_from(const JsonField& field) {
   BodyPoses poses;
   for (const JsonField& pose : field.members("an object of placements by the names of bodies")) {
     const std::string name = pose.path().substr(field.path().size() + 1);
     if (!is_body_name(name)) pose.refuse("the name of a body as a key");
     pose.allow({"position", "rotation"});
-    if (const auto position = pose.find("position")) poses[name].position = numbers_from(*position);
-    if (const auto rotation = pose.find("rotation")) poses[name].rotation = numbers_from(*rotation);
+    if (const auto position = pose.find("position")) poses[name].position = position->precise_triple();
+    if (const auto rotation = pose.find("rotation")) poses[name].rotation = rotation->precise_triple();
     pose.within([&] { check_pose(poses[name]); });
   }
   return poses;

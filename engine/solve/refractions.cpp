@@ -14,15 +14,15 @@ namespace quadgraph {
 namespace {
 
 double square_of_step(std::uint32_t step) {
-  const double root = static_cast<double>(step) / REFLECTANCE_STEPS;
+  const double root = static_cast<double>(step) / gpu::REFLECTANCE_STEPS;
   return root * root;
 }
 
 // Refraction::reflectance of that index.
-std::array<float, REFLECTANCE_VALUES> reflectances(double eta) {
-  std::array<float, REFLECTANCE_VALUES> found{};
-  constexpr std::uint32_t row = REFLECTANCE_STEPS + 1;
-  for (std::uint32_t k = 0; k < REFLECTANCE_VALUES; ++k) {
+std::array<float, gpu::REFLECTANCE_VALUES> reflectances(double eta) {
+  std::array<float, gpu::REFLECTANCE_VALUES> found{};
+  constexpr std::uint32_t row = gpu::REFLECTANCE_STEPS + 1;
+  for (std::uint32_t k = 0; k < gpu::REFLECTANCE_VALUES; ++k) {
     found[k] = static_cast<float>(rough_reflectance(square_of_step(k % row), square_of_step(k / row), eta));
   }
   return found;
@@ -69,7 +69,7 @@ Refractions::Refractions(device::Device& device, std::uint32_t bodies)
     : device_(device),
       eta_(bodies, 1.0f),
       on_device_(device, bodies * sizeof(gpu::Refraction), device::Place::device, "material/refraction of bodies"),
-      reflectances_(device, bodies * REFLECTANCE_VALUES * sizeof(float), device::Place::device,
+      reflectances_(device, bodies * gpu::REFLECTANCE_VALUES * sizeof(float), device::Place::device,
                     "material/reflectance of bodies"),
       boundaries_on_host_(bodies * value_count<Method> * value_count<Source> * value_count<Model>),
       boundaries_on_device_(device, boundaries_on_host_.size() * sizeof(gpu::Boundary), device::Place::device,
@@ -80,7 +80,7 @@ Refractions::Refractions(device::Device& device, std::uint32_t bodies)
 void Refractions::write() {
   const std::vector<float> different = different_indices(eta_);
   std::vector<gpu::Refraction> kinds, bodies;
-  std::vector<std::array<float, REFLECTANCE_VALUES>> tables;
+  std::vector<std::array<float, gpu::REFLECTANCE_VALUES>> tables;
   for (const float index : different) {
     const auto number = static_cast<std::uint32_t>(kinds.size());
     tables.push_back(reflectances(double{index}));

@@ -18,7 +18,7 @@ const float PI = 3.14159265;
 
 float roughness;  // GGX alpha here
 float eta;        // index of refraction here
-float evenly;     // share of even light that the surface here reflects towards the view
+float evenly;      // share of even light that the surface here reflects towards the view
 vec3 mesh_normal;  // with NORMAL_MAP: unit, before the map made it lean
 
 // Length of a way that is seen along the box's third axis, mm.
@@ -66,7 +66,7 @@ float blurred(LightRecord light, LightShape shape, vec3 position) {
   return roughness * roughness + shape.width * shape.width / (8.0 * dot(away, away));
 }
 
-// What a surface reflects of an environment towards v, over its power and Fresnel reflectance.
+// What a surface reflects of an environment towards v, over its power and `evenly`.
 vec3 reflected_environment(LightShape shape, vec3 n, vec3 v) {
   vec3 mirrored = reflect(-v, n);
   vec3 seen = environment_at(shape, ENVIRONMENT_REFLECTED, mirrored);

@@ -8,16 +8,13 @@
 
 #ifdef __cplusplus
 namespace quadgraph::gpu {
-using glm::clamp;
 using glm::max;
 using glm::min;
-using glm::mix;
 using glm::normalize;
 #endif
 
-// What a rough surface reflects, at the squares of even steps of the cosine of the view, and of GGX alpha.
-#define REFLECTANCE_STEPS 12
-#define REFLECTANCE_VALUES 169
+// Of a view with a rough surface: at least that.
+const float LEAST_SEEN_COSINE = 1e-3f;
 
 // Smith's Lambda of a way at that cosine, above 0: of facets turned towards it 1 / (1 + Lambda) are not hidden.
 QG_INLINE float smith_lambda(float cosine, float alpha) {

@@ -3,11 +3,15 @@
 #ifndef QUADGRAPH_REFRACTION_H
 #define QUADGRAPH_REFRACTION_H
 
-#include "shared/microfacets.h"
+#include "shared/shared.h"
 
 #ifdef __cplusplus
 namespace quadgraph::gpu {
 #endif
+
+// What a rough surface reflects is known at the squares of even steps of GGX alpha, and of the cosine of the view.
+const uint REFLECTANCE_STEPS = 12u;
+const uint REFLECTANCE_VALUES = (REFLECTANCE_STEPS + 1u) * (REFLECTANCE_STEPS + 1u);
 
 // Of a body by its index of refraction.
 struct Refraction {
@@ -55,7 +59,7 @@ float eta_behind(Uints kinds, uint face) {
 float rough_reflectance(Refraction body, float cosine, float alpha) {
   uint row = REFLECTANCE_STEPS + 1u;
   vec2 place = sqrt(clamp(vec2(cosine, alpha), 0.0, 1.0)) * float(REFLECTANCE_STEPS);
-  uvec2 cell = min(uvec2(place), uvec2(REFLECTANCE_STEPS - 1));
+  uvec2 cell = min(uvec2(place), uvec2(REFLECTANCE_STEPS - 1u));
   vec2 share = place - vec2(cell);
   uint at = cell.y * row + cell.x;
   float less = mix(body.reflectance.at[at], body.reflectance.at[at + 1u], share.x);

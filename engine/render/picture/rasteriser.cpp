@@ -23,8 +23,8 @@ namespace quadgraph {
 namespace {
 
 constexpr std::uint32_t tile_pixels = 512;  // per side; 96 MiB of samples
-constexpr std::uint32_t facets_where_clear =
-    4;  // of pictures of several frames: what is seen through them differs much
+// Of pictures of several frames, for each view ray: what is seen through them differs much.
+constexpr std::uint32_t facets_where_clear = 4;
 
 gpu::NormalMapRef normal_map(const PlacedNormals* placed) {
   if (placed == nullptr) return {};

@@ -5,8 +5,6 @@
 namespace quadgraph {
 namespace {
 
-constexpr std::uint32_t most_texels = 4096;  // a side, which no file exceeds
-
 gpu::ImageLevels levels_of(const ImagePyramid& image) {
   return {0, image.columns, image.rows, image.levels};
 }
@@ -37,7 +35,7 @@ const std::optional<NormalMap>& SurfaceMaps::own_normals() {
     const std::uint8_t* rgb = &mesh.normal_texture[i];
     picture.texels.push_back(glm::vec3(rgb[0], rgb[1], rgb[2]) / 255.0f);
   }
-  own_.emplace(std::make_shared<const ImagePyramid>(pyramid_of(slopes_from(std::move(picture)), most_texels)));
+  own_.emplace(std::make_shared<const ImagePyramid>(pyramid_of(slopes_from(std::move(picture)), most_texture_side)));
   texture_places_ = device::upload(device_, mesh.texture_places, "display/texture places");
   return own_;
 }
