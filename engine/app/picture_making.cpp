@@ -58,6 +58,7 @@ void Viewer::refuse(const Scene& made, const std::optional<Scene>& before, const
 SolveOptions Viewer::options_of_solve() const {
   if (making_->settles) return making_->scene.solve;
   SolveOptions quick = in_motion(making_->scene.solve, engine().graph().levels());
+  quick.carry = quick.correction && !pace_.corrects();
   quick.correction = quick.correction && pace_.corrects();
   return quick;
 }

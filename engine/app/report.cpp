@@ -28,9 +28,9 @@ Json as_json(const CertifiedPart& part) {
 }
 
 Json as_json(const Certificate& found) {
-  return {{"whole", as_json(found.whole)}, {"unlit", as_json(found.unlit)},     {"dimmest", as_json(found.dimmest)},
-          {"walks", found.walks},          {"segments", found.segments},        {"given_up", found.given_up},
-          {"seconds", found.seconds},      {"disagreement", found.disagreement}};
+  return {{"whole", as_json(found.whole)}, {"unlit", as_json(found.unlit)}, {"dimmest", as_json(found.dimmest)},
+          {"walks", found.walks},          {"segments", found.segments},    {"given_up", found.given_up},
+          {"seconds", found.seconds},      {"guided", found.guided},        {"disagreement", found.disagreement}};
 }
 
 Json as_json(const CorrectionReport& correction) {
@@ -94,6 +94,7 @@ Json as_json(const SolveReport& report) {
                     {"rounds", path.rounds}};
   }
   json["correction"] = report.correction ? as_json(*report.correction) : Json(nullptr);
+  json["carried"] = report.carried ? Json(*report.carried) : Json(nullptr);
   json["certificate"] = report.certificate ? as_json(*report.certificate) : Json(nullptr);
   json["finest"] = report.finest;
   json["work"] = report.work;
@@ -195,7 +196,9 @@ void tell_certificate(std::ostream& out, const Certificate& found) {
   out << "measured " << certified_text(found.whole) << " over the surface, ";
   if (found.unlit.power_noise > 0) out << certified_text(found.unlit) << " over the unlit part, ";
   if (found.dimmest.power_noise > 0) out << certified_text(found.dimmest) << " over the dimmest third, ";
-  out << "by " << decimals(found.walks / 1e6, 2) << " million random walks in " << decimals(found.seconds, 1) << " s\n";
+  out << "by " << decimals(found.walks / 1e6, 2)
+      << (found.guided ? " million guided walks in " : " million random walks in ") << decimals(found.seconds, 1)
+      << " s\n";
 }
 
 void tell_convergence(std::ostream& out, const Convergence& found) {

@@ -181,10 +181,14 @@ struct SolveOptions {
   std::uint32_t sweeps = 0;
   std::uint32_t sweep_points = 20000;  // where a sweep evaluates it
   std::uint32_t sweep_seed = 0;        // of all that sweeps draw, and of the light's own rays
+  // With `warm` and without correction: what the last one made of the exitance is carried on as a factor, if it was of
+  // such a solve.
+  bool carry = false;
   // The error that a correction at rest states is that of the mean of so many solves, alike but for their seeds; 0: of
   // this one alone.
   std::uint32_t mean_of = 0;
-  double certify = 0;  // s: so long random walks measure what the corrected exitance is off by; 0: none do
+  double certify = 0;        // s: so long random walks measure what the corrected exitance is off by; 0: none do
+  bool guided_walks = true;  // these know where light matters, where that tells more in the time
   // n > 0, with the links of a polygrid: on all levels but the coarsest only the first n layers of vertices below the
   // surface are solved for, the others keep what the coarser level has [PG Section 5.3, Fig. 8]; 0: all are.
   std::uint32_t active_layers = 0;

@@ -75,7 +75,14 @@ struct Certificate {
   double walks = 0, segments = 0;  // of one channel each; tets that they crossed
   double given_up = 0;             // share of the light in walks that were not followed to their end
   double seconds = 0;
+  bool guided = false;         // walks knew where light matters
   std::string disagreement{};  // where the error that is stated is less than what was measured; empty if nowhere
+};
+
+// What leaves each outside face, W/mm^2, and its standard error: of light that has scattered, or of a material that
+// says its g of all.
+struct WalkedExitance {
+  std::vector<glm::vec3> mean, standard_error;
 };
 
 // What Method::shortest_path did.
@@ -106,6 +113,9 @@ struct SolveReport {
   // What further iterations would change, and no less than the share of the light that is unaccounted for; empty if
   // that cannot be told yet. After a correction what that leaves of it.
   std::optional<ErrorEstimate> algebraic;
+  // Of a frame without a correction that shows the one before as a factor: the share of light and material that is as
+  // it was then; empty elsewhere.
+  std::optional<double> carried;
   // What the model leaves after a correction, and the noise of that; empty without.
   std::optional<ErrorEstimate> model_error;
   // That of the mesh: the difference between the exitance of the two finest levels, times the

@@ -118,6 +118,12 @@ void add_light_paths(OptionTable& table) {
        .help =
            "seconds in which random walks through the tets, which share nothing with the solver, measure how far the "
            "exitance is off; 0: none"});
+  table.member<&Scene::solve, &SolveOptions::guided_walks>(
+      {.name = "guided-walks",
+       .member = "/solver/guided_walks",
+       .keyword = "guided_walks",
+       .help =
+           "random walks of --certify are led to where little light leaves, where that tells more in the same time"});
   table.member<&Scene::solve, &SolveOptions::active_layers>(
       {.name = "active-layers",
        .member = "/solver/active_layers",
@@ -151,6 +157,11 @@ void add_motion(OptionTable& table) {
        .keyword = "warm",
        .on_command_line = false,
        .help = "start from the last solution of the same method and model"});
+  table.member<&Scene::solve, &SolveOptions::carry>(
+      {.name = "carry",
+       .keyword = "carry",
+       .on_command_line = false,
+       .help = "without correction, what the last one made of the exitance is carried on as a factor"});
   table.member<&Scene::solve, &SolveOptions::smoothing>(
       {.name = "smoothing",
        .keyword = "smoothing",

@@ -7,6 +7,7 @@
 #include "engine/base/text.h"
 #include "engine/device/memory.h"
 #include "engine/solve/mesh_error.h"
+#include "engine/solve/patch_sums.h"
 #include "engine/solve/source_walk.h"
 #include "engine/solve/surface_parts.h"
 #include "interface/transport/certify.comp.h"
@@ -21,101 +22,18 @@ constexpr std::uint64_t counts_at = gpu::CERTIFY_SUMS * FIXED_WORDS * gpu::WALK_
 // Of the light that enters a walk counts with one part in so many, whatever it stands for.
 constexpr double unit_parts = 1048576;
 
-constexpr double first_walks = 3e4;     // of a round, from which the speed is known
+constexpr double first_walks = 4e3;     // of a round, from which the speed is known
 constexpr double fixed_walks = 2e4;     // of a round, where no time is given, or fewer that cross
 constexpr double fixed_segments = 1e7;  // so many tets together
 constexpr double longest_round = 0.4;   // s
 constexpr double most_walks = 1e7;      // of a round
-constexpr double most_noise = 0.3;      // of the power of a part of which anything is said
+constexpr double least_to_try = 2;      // s, from which on it is tried whether guided walks pay,
+constexpr double share_tried = 0.1;     // for such a share of the time, as long as plain ones are
 constexpr double chance = 2;            // standard errors within which what was measured tells nothing
 constexpr double standard_errors = 3;   // from which on a difference is no chance
 
 double sum(const glm::dvec3& v) {
   return v.x + v.y + v.z;
-}
-
-// What the batches say of a part of the surface: power of the solution and of the walks, and by patch.
-struct PartSums {
-  struct Patch {
-    double area = 0;
-    glm::dvec3 solved{0};
-    std::array<glm::dvec3, Certifier::batches> walked{};
-  };
-  std::vector<Patch> patches = std::vector<Patch>(most_patches);
-};
-
-// Mean and its standard error.
-template <typename Values>
-std::pair<double, double> mean_of(const Values& values) {
-  const double count = static_cast<double>(values.size());
-  double mean = 0, squares = 0;
-  for (const double value : values) mean += value / count;
-  for (const double value : values) squares += (value - mean) * (value - mean);
-  return {mean, std::sqrt(squares / (count * (count - 1)))};
-}
-
-// Of the batches but one, or of all: the products of what different ones differ from the solution by, which the noise
-// of neither is in, over patches; relative to the light of the walks.
-double relative_square(const PartSums& part, std::size_t without) {
-  double products = 0, size = 0;
-  for (const PartSums::Patch& patch : part.patches) {
-    if (patch.area == 0) continue;
-    glm::dvec3 difference{0}, walked{0};
-    double own = 0, count = 0;
-    for (std::size_t b = 0; b < patch.walked.size(); ++b) {
-      if (b == without) continue;
-      const glm::dvec3 d = patch.solved - patch.walked[b];
-      difference += d;
-      walked += patch.walked[b];
-      own += glm::dot(d, d);
-      ++count;
-    }
-    products += (glm::dot(difference, difference) - own) / (count * (count - 1)) / patch.area;
-    size += glm::dot(walked, walked) / (count * count) / patch.area;
-  }
-  return size > 0 ? products / size : 0;
-}
-
-// The third of the surface whose patches send out least. By face it would be where the noise of the solution is low.
-std::vector<bool> dimmest_patches(const PartSums& whole) {
-  std::vector<std::size_t> order;
-  double left = 0;
-  for (std::size_t k = 0; k < whole.patches.size(); ++k) {
-    if (whole.patches[k].area == 0) continue;
-    order.push_back(k);
-    left += whole.patches[k].area / 3;
-  }
-  const auto bright = [&](std::size_t k) { return sum(whole.patches[k].solved) / whole.patches[k].area; };
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return bright(a) < bright(b); });
-  std::vector<bool> taken(whole.patches.size());
-  for (const std::size_t k : order) {
-    left -= whole.patches[k].area;
-    taken[k] = true;
-    if (left <= 0) break;
-  }
-  return taken;
-}
-
-CertifiedPart certified(const PartSums& part) {
-  std::array<double, Certifier::batches> walked{};
-  double solved = 0;
-  for (const PartSums::Patch& patch : part.patches) {
-    solved += sum(patch.solved);
-    for (std::size_t b = 0; b < walked.size(); ++b) walked[b] += sum(patch.walked[b]);
-  }
-  const auto [power, noise] = mean_of(walked);
-  if (!(power > 0) || noise > most_noise * power) return {};
-  const double square = relative_square(part, walked.size());
-  // Jackknife over the batches.
-  const double count = static_cast<double>(walked.size());
-  std::array<double, Certifier::batches> left_out{};
-  for (std::size_t b = 0; b < left_out.size(); ++b) left_out[b] = relative_square(part, b);
-  const double spread = (count - 1) * mean_of(left_out).second;
-  const double error = std::sqrt(std::max(square, 0.0));
-  return {.power = solved / power - 1,
-          .power_noise = noise / power * (solved / power),
-          .error = error,
-          .error_noise = std::sqrt(std::max(square, 0.0) + spread) - error};
 }
 
 // What a sentence says of a part; empty where it has nothing against it.
@@ -127,11 +45,21 @@ std::string against(const char* name, const CertifiedPart& part, double stated) 
          percent_text(stated) + " is stated";
 }
 
+// Whether the parts of the surface are told in less time by guided walks than by plain ones, on average.
+bool gains(const std::array<double, 3>& plain, const std::array<double, 3>& guided) {
+  double gain = 1;
+  for (std::size_t k = 0; k < plain.size(); ++k) {
+    if (plain[k] > 0 && guided[k] > 0) gain *= plain[k] / guided[k];
+  }
+  return gain > 1;
+}
+
 }  // namespace
 
 Certifier::Certifier(device::Device& device, const Level& level)
     : patch_(surface_patches(level)),
-      leaving_(device, batches * level.face_count() * sum_bytes, device::Place::device, "certificate/leaving"),
+      importance_(device, level.vertex_count() * sizeof(glm::vec3), device::Place::device, "certificate/importance"),
+      leaving_(device, walk_batches * level.face_count() * sum_bytes, device::Place::device, "certificate/leaving"),
       sums_(device, (counts_at + 2 * gpu::WALK_SUMS) * sizeof(std::uint32_t), device::Place::device,
             "certificate/sums"),
       sums_on_host_(device, sums_.size(), device::Place::host, "certificate/sums, read back") {}
@@ -142,10 +70,11 @@ void Certifier::forget(Workspace& work) {
 }
 
 // One round of all beams, about so many walks.
-void Certifier::round(const CertifiedSolution& solution, double walks, std::uint32_t batch, std::uint32_t seed,
+void Certifier::round(const CertifiedSolution& solution, const Task& task, double walks, std::uint32_t number,
                       Made& made) {
   Workspace& work = solution.work;
   const LevelBuffers& level = solution.level;
+  const std::uint32_t batch = number % walk_batches;
   const glm::dvec3 entered = solution.entered * glm::dvec3(solution.scale.inverse);
   gpu::CertifyPush push{.field = solution.field.address(),
                         .beam = solution.beams.on_device.address(),
@@ -153,12 +82,14 @@ void Certifier::round(const CertifiedSolution& solution, double walks, std::uint
                         .scale = work.scale.address(),
                         .leaving = leaving_.address() + batch * level.face_count * sum_bytes,
                         .sums = sums_.address(),
+                        .importance = importance_.address(),
                         .g = solution.g,
                         .walk = glm::vec3(3.0 / walks * entered),
                         .unit = glm::vec3(entered / unit_parts),
                         .rays = 1,
                         .sky = 0,
-                        .first = gpu::hash(seed)};
+                        .first = gpu::hash(task.seed + number),
+                        .guided = task.guided ? 1u : 0u};
   work.recorder.fill(sums_, 0);
   for (const gpu::Beam& beam : solution.beams.beams) {
     const std::uint32_t kind = beam.way.kind;
@@ -183,35 +114,73 @@ void Certifier::round(const CertifiedSolution& solution, double walks, std::uint
   made.weight[batch] += walks / 3 / unit_parts;
 }
 
-Certificate Certifier::run(const CertifiedSolution& solution, double seconds, std::uint32_t seed,
-                           const std::function<void()>& check) {
+Certifier::Made Certifier::measure(const CertifiedSolution& solution, const Task& task) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
   const auto since = [](Clock::time_point before) {
     return std::chrono::duration<double>(Clock::now() - before).count();
   };
   Made made;
-  const bool timed = seconds > 0;
-  double walks = timed ? first_walks : fixed_walks / batches;
-  round(solution, walks, 0, seed, made);
+  const bool timed = task.seconds > 0;
+  double walks = timed ? first_walks : fixed_walks / walk_batches;
+  round(solution, task, walks, 0, made);
   double took = since(start);
   if (!timed) walks = std::min(fixed_walks, walks * fixed_segments / std::max(made.segments, 1.0));
   made = {};
   forget(solution.work);
-  for (std::uint32_t number = 0; number < batches || since(start) + 0.5 * took < seconds; ++number) {
-    if (check) check();
-    const double wanted = std::clamp(seconds / (2 * batches), 0.02, longest_round);
-    if (timed && number % batches == 0) walks = std::clamp(walks * wanted / took, first_walks / 8, most_walks);
+  for (std::uint32_t number = 0; number < walk_batches || since(start) + 0.5 * took < task.seconds; ++number) {
+    if (task.check) task.check();
+    const double wanted = std::clamp(task.seconds / (2 * walk_batches), 0.02, longest_round);
+    if (timed && number % walk_batches == 0) walks = std::clamp(walks * wanted / took, first_walks / 8, most_walks);
     const Clock::time_point before = Clock::now();
-    round(solution, walks, number % batches, seed + number + 1, made);
+    round(solution, {task.guided, task.seconds, task.seed + 1, task.check}, walks, number, made);
     took = since(before);
   }
-  Certificate found = judge(solution, made);
-  found.seconds = since(start);
+  made.seconds = since(start);
+  return made;
+}
+
+std::array<double, 3> Certifier::noise_by_time(const CertifiedSolution& solution, const Task& task) {
+  const Made made = measure(solution, task);
+  std::array<double, 3> found{};
+  const std::array parts = parts_of(solution, made);
+  for (std::size_t k = 0; k < parts.size(); ++k) found[k] = relative_variance(parts[k]) * made.seconds;
   return found;
 }
 
-Certificate Certifier::judge(const CertifiedSolution& solution, const Made& made) {
+Certificate Certifier::run(const CertifiedSolution& solution, double seconds, std::uint32_t seed,
+                           const std::function<void()>& check) {
+  const auto start = std::chrono::steady_clock::now();
+  bool guided = (seconds >= least_to_try || solution.trusted) && !solution.importance.empty();
+  double left = seconds;
+  if (guided) {
+    device::write_bytes(solution.work.recorder.device(), importance_, std::as_bytes(solution.importance));
+  }
+  if (guided && !solution.trusted) {
+    const double tried = share_tried * seconds;
+    const std::array plain = noise_by_time(solution, {false, tried, gpu::hash(seed + 1), check});
+    guided = gains(plain, noise_by_time(solution, {true, tried, gpu::hash(seed + 2), check}));
+    left = std::max(seconds - std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
+                    share_tried * seconds);
+  }
+  const Made made = measure(solution, {guided, left, seed, check});
+  const auto [whole, unlit, dimmest] = parts_of(solution, made);
+  area_ = solution.surface.area;
+  weight_ = made.weight;
+  scale_ = glm::dvec3(solution.scale.scale);
+  double weight = 0;
+  for (const double of_batch : made.weight) weight += of_batch;
+  return {.whole = certified(whole),
+          .unlit = certified(unlit),
+          .dimmest = certified(dimmest),
+          .walks = made.walks,
+          .segments = made.segments,
+          .given_up = sum(made.given_up) / weight / std::max(sum(solution.entered), 1e-300),
+          .seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
+          .guided = guided};
+}
+
+std::array<PatchSums, 3> Certifier::parts_of(const CertifiedSolution& solution, const Made& made) const {
   const SurfaceField& surface = solution.surface;
   const std::size_t faces = surface.area.size();
   const auto words = device::download<std::uint32_t>(solution.work.recorder.device(), leaving_);
@@ -220,27 +189,40 @@ Certificate Certifier::judge(const CertifiedSolution& solution, const Made& made
   // What little angles divide is not the same by the reduced coefficient: all that leaves is.
   const float direct = solution.g == glm::vec3(0) ? 0.0f : 1.0f;
   const auto part_of = [&](const auto& taken) {
-    PartSums sums;
+    PatchSums sums;
     for (std::size_t f = 0; f < faces; ++f) {
       if (!taken(f)) continue;
-      PartSums::Patch& patch = sums.patches[patch_[f]];
+      PatchSums::Patch& patch = sums.patches[patch_[f]];
       const double area = surface.area[f];
       patch.area += area;
       patch.solved += area * glm::dvec3(surface.exitance[f] + direct * surface.unscattered[f]);
-      for (std::size_t b = 0; b < batches; ++b) patch.walked[b] += leaving[b * faces + f] / made.weight[b];
+      for (std::size_t b = 0; b < walk_batches; ++b) patch.walked[b] += leaving[b * faces + f] / made.weight[b];
     }
     return sums;
   };
-  const PartSums whole = part_of([](std::size_t) { return true; });
+  PatchSums whole = part_of([](std::size_t) { return true; });
   const std::vector<bool> dim = dimmest_patches(whole);
-  double weight = 0;
-  for (const double of_batch : made.weight) weight += of_batch;
-  return {.whole = certified(whole),
-          .unlit = certified(part_of([&](std::size_t f) { return parts.unlit[f]; })),
-          .dimmest = certified(part_of([&](std::size_t f) { return dim[patch_[f]]; })),
-          .walks = made.walks,
-          .segments = made.segments,
-          .given_up = sum(made.given_up) / weight / std::max(sum(solution.entered), 1e-300)};
+  return {std::move(whole), part_of([&](std::size_t f) { return parts.unlit[f]; }),
+          part_of([&](std::size_t f) { return dim[patch_[f]]; })};
+}
+
+WalkedExitance Certifier::exitance(device::Device& device) const {
+  const auto leaving = powers(device::download<std::uint32_t>(device, leaving_), scale_);
+  const std::size_t faces = area_.size();
+  WalkedExitance found{std::vector<glm::vec3>(faces), std::vector<glm::vec3>(faces)};
+  for (std::size_t f = 0; f < faces; ++f) {
+    glm::dvec3 sum_of(0), squares(0);
+    for (std::size_t b = 0; b < walk_batches; ++b) {
+      const glm::dvec3 value = leaving[b * faces + f] / (weight_[b] * area_[f]);
+      sum_of += value;
+      squares += value * value;
+    }
+    constexpr double count = walk_batches;
+    found.mean[f] = glm::vec3(sum_of / count);
+    const glm::dvec3 left = glm::max(squares - sum_of * sum_of / count, glm::dvec3(0));
+    found.standard_error[f] = glm::vec3(glm::sqrt(left / (count * (count - 1))));
+  }
+  return found;
 }
 
 void state_disagreement(SolveReport& report) {

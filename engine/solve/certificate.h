@@ -4,11 +4,13 @@
 
 #include <array>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "engine/reference/solution.h"
 #include "engine/solve/beams.h"
 #include "engine/solve/level_buffers.h"
+#include "engine/solve/patch_sums.h"
 #include "engine/solve/workspace.h"
 #include "shaders/solver/solve_shared.h"
 
@@ -24,35 +26,58 @@ struct CertifiedSolution {
   gpu::Scale scale;             // of the light
   glm::dvec3 entered;           // W
   glm::vec3 g;                  // mean cosine of the angle by which light scatters
+  // Per vertex, as of importance.h, above zero: guides walks, where that tells more in the time; empty: none are
+  // guided.
+  std::span<const glm::vec3> importance;
+  bool trusted = false;  // it guides them without a trial
 };
 
 class Certifier {
  public:
-  // Groups of walks that share nothing: what these differ by is the noise.
-  static constexpr std::uint32_t batches = 16;
-
   // `level`: the finest, whose faces stay what they are.
   Certifier(device::Device& device, const Level& level);
 
-  // Walks for about so long; 0: a number of them that does not depend on the machine. `check` is called every half a
-  // second at the latest; what it throws ends it.
+  // Walks for about so long, from two seconds on guided where that tells more in the time; 0: a number of them that
+  // does not depend on the machine, and none are guided. `check` is called every half a second at the latest; what it
+  // throws ends it.
   Certificate run(const CertifiedSolution& solution, double seconds, std::uint32_t seed,
                   const std::function<void()>& check);
+
+  // By the walks of the last run.
+  WalkedExitance exitance(device::Device& device) const;
 
  private:
   // Walks that were made: what the sums of `batch` are of, in walks that each stand for the unit.
   struct Made {
-    std::array<double, batches> weight{};
+    std::array<double, walk_batches> weight{};
     double walks = 0, segments = 0;
     glm::dvec3 given_up{0};  // W, of all of them
+    double seconds = 0;
   };
 
-  void round(const CertifiedSolution& solution, double walks, std::uint32_t batch, std::uint32_t seed, Made& made);
+  // What to do: for about so long, or a number.
+  struct Task {
+    bool guided = false;
+    double seconds = 0;
+    std::uint32_t seed = 0;
+    const std::function<void()>& check;
+  };
+
+  void round(const CertifiedSolution& solution, const Task& task, double walks, std::uint32_t number, Made& made);
   void forget(Workspace& work);
-  Certificate judge(const CertifiedSolution& solution, const Made& made);
+  // Walks in rounds, behind one that tells how fast they are.
+  Made measure(const CertifiedSolution& solution, const Task& task);
+  // Variance of what such walks tell of the parts, times the time; 0 where they tell nothing.
+  std::array<double, 3> noise_by_time(const CertifiedSolution& solution, const Task& task);
+  // The whole surface, its unlit part and its dimmest third.
+  std::array<PatchSums, 3> parts_of(const CertifiedSolution& solution, const Made& made) const;
 
   std::vector<std::uint32_t> patch_;  // per face
-  device::Buffer leaving_;            // fixed point, per batch and face
+  std::vector<float> area_;           // per face, mm^2, of the last run, as what follows
+  std::array<double, walk_batches> weight_{};
+  glm::dvec3 scale_{0};
+  device::Buffer importance_;  // vec3 per vertex, where walks are guided
+  device::Buffer leaving_;     // fixed point, per batch and face
   device::Buffer sums_, sums_on_host_;
 };
 

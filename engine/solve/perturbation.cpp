@@ -34,9 +34,8 @@ Perturbation::Perturbation(device::Device& device, const Level& level) : patch_(
   clip_ = room(1, sizeof(gpu::Clip), "clip");
 }
 
-// The operator lends its rows and vectors; b and x of its own solution stay what they are.
-std::vector<glm::vec3> Perturbation::exitance(const PerturbedSolution& solution,
-                                              const std::function<void(OperatorBuffers&)>& record) {
+// Leaves the exitance, too. The operator lends its rows and vectors; b and x of its own solution stay what they are.
+void Perturbation::solve(const PerturbedSolution& solution, const Record& record) {
   Workspace& work = solution.work;
   OperatorBuffers& op = solution.operators.at(solution.key, 0);
   std::swap(op.b, load_);
@@ -55,18 +54,31 @@ std::vector<glm::vec3> Perturbation::exitance(const PerturbedSolution& solution,
   work.recorder.submit();
   std::swap(op.b, load_);
   std::swap(op.x, change_);
-  return device::download<glm::vec3>(work.recorder.device(), exitance_);
 }
 
-std::vector<glm::vec3> Perturbation::exitance(const PerturbedSolution& solution, std::span<const glm::vec3> load) {
+Perturbation::Record Perturbation::given(const PerturbedSolution& solution, std::span<const glm::vec3> load) {
   Workspace& work = solution.work;
   device::write_bytes(work.recorder.device(), given_, std::as_bytes(load));
-  return exitance(solution, [&](OperatorBuffers& op) {
+  return [&](OperatorBuffers& op) {
     const gpu::RightHandSideGivenPush push{
         .load = given_.address(), .side = op.right_hand_side(work.reduction), .count = op.count};
     work.recorder.dispatch(work.passes.of(shader::right_hand_side_given, op.model, op.format), push, op.count,
                            "right-hand side", op.count * (op.block_bytes() + op.field_bytes() + vec3_bytes));
-  });
+  };
+}
+
+std::vector<glm::vec3> Perturbation::exitance(const PerturbedSolution& solution, const Record& record) {
+  solve(solution, record);
+  return device::download<glm::vec3>(solution.work.recorder.device(), exitance_);
+}
+
+std::vector<glm::vec3> Perturbation::exitance(const PerturbedSolution& solution, std::span<const glm::vec3> load) {
+  return exitance(solution, given(solution, load));
+}
+
+std::vector<glm::vec3> Perturbation::fluence(const PerturbedSolution& solution, std::span<const glm::vec3> load) {
+  solve(solution, given(solution, load));
+  return device::download<glm::vec3>(solution.work.recorder.device(), change_);
 }
 
 ErrorEstimate Perturbation::relative(const PerturbedSolution& solution, std::span<const glm::vec3> a,

@@ -38,12 +38,23 @@ class Perturbation {
   // The same of a load of one vec3 per vertex, scaled.
   std::vector<glm::vec3> exitance(const PerturbedSolution& solution, std::span<const glm::vec3> load);
 
+  // Per vertex, scaled: the fluence that such a load brings.
+  std::vector<glm::vec3> fluence(const PerturbedSolution& solution, std::span<const glm::vec3> load);
+
+  // The patch of each face (surface_parts.h).
+  std::span<const std::uint32_t> patches() const { return patch_; }
+
   // Relative RMS of the means over patches of the surface, by part: root of the mean product of two changes of which
   // `counts` does, per channel, but for the noise of either. Of one change its own.
   ErrorEstimate relative(const PerturbedSolution& solution, std::span<const glm::vec3> a, std::span<const glm::vec3> b,
                          const glm::dvec3& counts) const;
 
  private:
+  using Record = std::function<void(OperatorBuffers&)>;
+
+  Record given(const PerturbedSolution& solution, std::span<const glm::vec3> load);
+  void solve(const PerturbedSolution& solution, const Record& record);
+
   std::vector<std::uint32_t> patch_;      // per face
   device::Buffer given_;                  // vec3 per vertex: a load from the host
   device::Buffer load_, change_;          // vec3 per vertex: b and x

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "engine/solve/importance.h"
 #include "engine/solve/simulation_implementation.h"
 
 namespace quadgraph {
@@ -119,11 +120,13 @@ void Simulation::make_room(const SolveOptions& options, bool gather) {
 
 SolveReport Simulation::solve(const SolveOptions& options, const std::function<void()>& check,
                               const std::function<void(bool)>& light) {
+  implementation_->certified = false;
   SolveReport report = implementation_->solve(options, check, light);
   const KnownAngles by_sweeps = options.warm ? KnownAngles::swept : KnownAngles::measured;
   const KnownAngles known = report.correction ? by_sweeps : KnownAngles::reduced;
   report.phase_warning = quadgraph::phase_warning(implementation_->coefficients.angles(), known);
   if (!options.warm && report.correction) state_medium_error(options, report);
+  if (report.correction) implementation_->carried->keep_error(report);
   return report;
 }
 
@@ -159,8 +162,17 @@ bool Simulation::certifies(const SolveOptions& options) const {
          (corrects(options) && !options.warm && implementation_->coefficients.angles().g != glm::vec3(0));
 }
 
-void Simulation::certify(const SolveOptions& options, SolveReport& report, const std::function<void()>& check) {
+void Simulation::certify(const SolveOptions& options, SolveReport& report, const std::function<void()>& check,
+                         std::span<const glm::vec3> importance) {
   Implementation& self = *implementation_;
+  std::vector<glm::vec3> own;
+  const bool trusted = !importance.empty();
+  if (options.certify > 0 && options.guided_walks && !trusted) {
+    self.with_solution(self.correction_boundaries(), [&](const PerturbedSolution& solution) {
+      own = importance_of(*self.perturbation, solution, present_level());
+    });
+    importance = own;
+  }
   report.certificate = made(self.certifier, self.device, self.shape)
                            .run({.work = self.work,
                                  .level = self.levels[0],
@@ -169,8 +181,11 @@ void Simulation::certify(const SolveOptions& options, SolveReport& report, const
                                  .surface = surface_field(),
                                  .scale = device::download<gpu::Scale>(self.device, self.work.scale)[0],
                                  .entered = report.energy.entered,
-                                 .g = self.coefficients.angles().g},
+                                 .g = self.coefficients.angles().g,
+                                 .importance = importance,
+                                 .trusted = trusted},
                                 options.certify, options.sweep_seed, check);
+  self.certified = true;
   if (self.coefficients.angles().g != glm::vec3(0)) add_phase_error(report);
   state_disagreement(report);
   state_anew(report, options.error);
@@ -202,6 +217,12 @@ SurfaceField Simulation::surface_field() const {
   field.exitance = device::download<glm::vec3>(self.device, self.results.exitance());
   field.unscattered = self.unscattered(field.area);
   return field;
+}
+
+WalkedExitance Simulation::walked_exitance() const {
+  const Implementation& self = *implementation_;
+  if (!self.certified) throw InputError("walked exitance: no walks have certified the last solve; solve with certify");
+  return self.certifier->exitance(self.device);
 }
 
 std::vector<glm::vec3> Simulation::phi() const {

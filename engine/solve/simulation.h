@@ -146,7 +146,10 @@ class Simulation {
 
   // Random walks for options.certify seconds, or a number of them, after all else is said of the error in `report`, of
   // that solve. `check` as of `solve`.
-  void certify(const SolveOptions& options, SolveReport& report, const std::function<void()>& check);
+  // `importance`: per vertex of level 0, above zero, that guides them all, as light that enters meets 1 on average;
+  // empty: of the solution's own, where that pays (importance.h).
+  void certify(const SolveOptions& options, SolveReport& report, const std::function<void()>& check,
+               std::span<const glm::vec3> importance = {});
 
   // To be called where work of the device was given up half-way (device::Interruptible): keeps what was set, and
   // nothing that was derived from it.
@@ -158,6 +161,9 @@ class Simulation {
   // Results of the last solve, level 0.
   SurfaceField surface_field() const;
   std::vector<glm::vec3> phi() const;  // per carrier of the method
+
+  // What the walks found that certified the last solve. Throws InputError where none did.
+  WalkedExitance walked_exitance() const;
 
   // The exitance that the last solve found on a level, W/mm^2 per outside face, scattered. Throws InputError if it did
   // not go over that level.

@@ -21,6 +21,7 @@ void Simulation::Implementation::correction_room(std::uint32_t points) {
   operators.rounded(correction_key, coefficients.packed_rounding(correction_key.model));
   operators.create(device, shape.levels(), correction_key, coefficients.even(), false);
   if (!correction) correction.emplace(device, shape.levels()[0]);
+  if (!carried) carried.emplace(device, levels[0]);
   correction->make_room(device, points);
   gather_room().make_room_corrected(device, shape.levels()[0]);
   if (!goes_forward()) return;
@@ -58,6 +59,11 @@ CorrectedPatches Simulation::Implementation::measure_patches(const BodyBoundarie
   return patches;
 }
 
+double Simulation::Implementation::material_change() {
+  if (!optical_changed) return 0;
+  return std::max(extinction_change(corrected_optical, optical_at(0)), index_change(corrected_eta, refractions.eta()));
+}
+
 void Simulation::Implementation::forget_other_material() {
   if (!optical_changed) return;
   std::vector<gpu::Optical> now = optical_at(0);
@@ -91,11 +97,15 @@ void Simulation::Implementation::correct(const OperatorKey& key, const SolveOpti
       work, levels[0], beams, walks[0], gather->nearest(), *tree, report.inter_reflection, coefficients.angles().g};
   const CorrectionParts parts{
       transport, operators, boundaries, of_solve, results, resolution_with(key.model).front().slow, check};
+  carried->forget();
+  carried->record_solved(work, levels[0], results.exitance());
   report.correction = correction->run(parts, options, {Method::fem, coefficients.even(), options.mean_rays});
   if (!options.warm) take_patches(*report.correction, measure_patches(boundaries), options);
   results.record_corrected(work, of_solve, correction->fluence(), correction->exitance(), report.correction->taken);
   correction->record_taken(parts, *report.correction);
+  carried->record_corrected(work, results.exitance());
   work.recorder.submit();
+  carried->keep(key);
   report.energy = results.energy();
   const TransportPower power = correction->power(glm::dvec3(scale()), report.energy.scattered_out);
   report.energy.entered = power.entered;
@@ -105,6 +115,18 @@ void Simulation::Implementation::correct(const OperatorKey& key, const SolveOpti
   report.clipped = results.clipped();
   state_corrected_error(report, resolution_with(key.model).front().corrected, options.mean_of);
   state_missed(report, options.error);
+  report.model_warning.clear();
+}
+
+void Simulation::Implementation::carry(const OperatorKey& key, const SolveOptions& options, SolveReport& report) {
+  if (!carried || !carried->knows(key)) return;
+  const double material = std::max(0.0, 1 - material_change());
+  carried->record(work, levels[0], results.exitance(), material);
+  results.record_shown(
+      work, {levels[0], operators.at(key, 0), key.method, refractions.boundaries(key.method, options.source, key.model),
+             options.source == Source::buried ? &walks[0] : nullptr});
+  work.recorder.submit();
+  carried->state(report, material);
   report.model_warning.clear();
 }
 

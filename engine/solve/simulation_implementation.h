@@ -14,6 +14,7 @@
 #include "engine/solve/asked_error.h"
 #include "engine/solve/beams.h"
 #include "engine/solve/body_shape.h"
+#include "engine/solve/carried_correction.h"
 #include "engine/solve/certificate.h"
 #include "engine/solve/coefficients.h"
 #include "engine/solve/gather_field.h"
@@ -48,7 +49,9 @@ struct Simulation::Implementation {
   std::optional<GatherField> gather;              // the same
   std::optional<Gather> gathers_now;              // of the last solution
   std::optional<TransportCorrection> correction;  // made at first use
+  std::optional<CarriedCorrection> carried;       // the same
   std::optional<Certifier> certifier;             // the same
+  bool certified = false;                         // the last solve, by it
   std::optional<Perturbation> perturbation;       // the same
   std::optional<LightError> light_error;          // the same
   bool corrected = false;                         // the last solution is
@@ -144,6 +147,7 @@ struct Simulation::Implementation {
     walks.clear();
     for (std::uint32_t i = 0; i < levels.size(); ++i) walks.emplace_back(device, shape.levels()[i], i);
     correction.reset();
+    carried.reset();
     perturbation.reset();
     light_error.reset();
     gather.reset();
@@ -205,6 +209,7 @@ struct Simulation::Implementation {
     report.deformed = shape.spoilt();
     corrected = corrects(options);
     if (corrected) correct(key, options, check, report);
+    if (!corrected && options.warm && options.carry) carry(key, options, report);
     report.advice = advice(report);
     passes = work.recorder.passes();
     gathers_now.reset();
@@ -231,6 +236,12 @@ struct Simulation::Implementation {
   CorrectedPatches measure_patches(const BodyBoundaries& boundaries);
 
   void correct(const OperatorKey& key, const SolveOptions& options, const Check& check, SolveReport& report);
+
+  // What the last correction found, where it was of such a solve.
+  void carry(const OperatorKey& key, const SolveOptions& options, SolveReport& report);
+
+  // Of the coefficients since the last correction, a share.
+  double material_change();
 
   // Of the last solution.
   FirstMoment fluence() {

@@ -56,6 +56,9 @@ class SurfaceResults {
   void record_corrected(Workspace& work, const Solved& solved, const device::Buffer& fluence,
                         const device::Buffer& exitance, const ErrorEstimate& taken);
 
+  // What is displayed, anew, where the exitance has been changed since.
+  void record_shown(Workspace& work, const Solved& solved) { record_display(work, solved); }
+
   // Energy of what was recorded last and has run, without the walk's share; and what was clipped in it.
   Energy energy() const;
   glm::dvec3 clipped() const;

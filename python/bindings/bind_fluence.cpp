@@ -41,6 +41,15 @@ void bind_fluence(py::module_& module) {
   module.def("solved_tets", &solved_tets, py::arg("engine"),
              "Vertices of level 0 as they lie now, (n_v, 3) mm, and the coefficients in its tets that the last solve "
              "was for, (n_t, 3) 1/mm each: sigma_s_prime and sigma_a.");
+  module.def(
+      "walked_exitance",
+      [](Engine& engine) {
+        WalkedExitance found = engine.simulation().walked_exitance();
+        return py::make_tuple(own(std::move(found.mean)), own(std::move(found.standard_error)));
+      },
+      py::arg("engine"),
+      "What the walks of `certify` found, per outside face of level 0, (n, 3) W/mm^2: mean and standard error. Raises "
+      "InputError.");
 }
 
 }  // namespace quadgraph::python

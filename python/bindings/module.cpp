@@ -138,6 +138,7 @@ py::dict certificate_dict(const Certificate& found) {
   d["segments"] = found.segments;
   d["given_up"] = found.given_up;
   d["seconds"] = found.seconds;
+  d["guided"] = found.guided;
   d["disagreement"] = found.disagreement;
   return d;
 }
@@ -188,6 +189,7 @@ py::dict as_dict(const SolveReport& report) {
   d["exchange_age"] = report.exchange_age;
   d["path"] = report.path ? py::object(path_dict(*report.path)) : py::object(py::none());
   d["correction"] = report.correction ? py::object(correction_dict(*report.correction)) : py::object(py::none());
+  d["carried"] = report.carried ? py::object(py::float_(*report.carried)) : py::object(py::none());
   d["certificate"] = report.certificate ? py::object(certificate_dict(*report.certificate)) : py::object(py::none());
   d["finest"] = report.finest;
   d["work"] = report.work;

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     )
     from quadgraph.api.derivatives import ForwardModel, Gradient, Outgoing, Views
     from quadgraph.api.engine import Engine
-    from quadgraph.api.fields import Fluence, SurfaceField
+    from quadgraph.api.fields import Fluence, SurfaceField, WalkedExitance
     from quadgraph.api.lights import (
         AmbientLight,
         DirectionalLight,
@@ -135,6 +135,7 @@ __all__ = [
     "Views",
     "VolumeMap",
     "VolumeMaterial",
+    "WalkedExitance",
     "__version__",
     "bake",
     "bake_bodies",
@@ -150,7 +151,7 @@ _PLACES = {
     "quadgraph.api.deformers": "Bend Cage Deformer Displaced Lattice Shapes Stretch Taper Transform Twist",
     "quadgraph.api.derivatives": "ForwardModel Gradient Outgoing Views",
     "quadgraph.api.engine": "Engine",
-    "quadgraph.api.fields": "Fluence SurfaceField",
+    "quadgraph.api.fields": "Fluence SurfaceField WalkedExitance",
     "quadgraph.api.lights": "AmbientLight DirectionalLight EnvironmentLight Light PointLight ProjectorLight "
     "RectangleLight SpotLight default_lights",
     "quadgraph.api.materials": "Material VolumeMaterial material_names",

@@ -50,6 +50,13 @@ QG_ARRAY(EvenFaces, EvenFace);
 
 #endif
 
+// A correction that is carried on as a factor at each face (carried_exitance.comp): what it may be at most, or one over
+// that; the light, in the mean of the surface, beside which a face's own is little; and how much faster than its factor
+// fades the light may change.
+const float CARRIED_MOST = 3.0f;
+const float CARRIED_LITTLE = 0.1f;
+const float CARRIED_GAIN = 2.0f;
+
 const uint SURFACE_STORE = 0u;       // before = M
 const uint SURFACE_CHANGE = 1u;      // change of M since `before`, then before = M; decides whether to go on
 const uint SURFACE_DIFFERENCE = 2u;  // difference of M from `before`

@@ -18,12 +18,14 @@ struct CertifyPush {
   // Fixed point, WALK_SUMS times CERTIFY_SUMS: absorbed; left unscattered; given up. Behind them WALK_SUMS times two plain
   // numbers: walks, and tets that they crossed.
   Uints sums;
+  Vec3s importance;  // per vertex, where walks are guided: 1 where a walk begins, on average
   vec3 g;         // mean cosine of the angle by which light scatters
   vec3 walk;      // power that a walk stands for, scaled; 0 in a channel without light
   vec3 unit;      // power that it counts with, scaled
   uint rays;      // a face, as of TransportWalkPush
   uint sky;       // the same
   uint first;     // the same
+  uint guided;    // 1: by importance
 };
 layout(push_constant, scalar) uniform Block { CertifyPush push; };
 
@@ -32,22 +34,50 @@ TransportFieldRef field;
 #define BODY field.body
 #include "source/fixed_point.glsl"
 #include "transport/entering_light.glsl"
-#include "transport/phase_function.glsl"
+#include "transport/importance.glsl"
 
 vec3 given_up;
 bool scattered;  // the present walk has
 uint walks, crossed;
+
+// A part of the present walk.
+struct Waiting {
+  Ray ray;
+  bool scattered;
+};
+Waiting waiting[MOST_WAITING];
+uint waiting_count;
 
 // Optical depth to the next collision.
 float free_depth() {
   return -log(1.0 - uniform_number(state));
 }
 
-// Ends a ray of little power by chance, without bias.
-void thin_out(inout Ray ray, uint channel) {
-  float share = ray.power[channel] / (TRANSPORT_ROULETTE * push.unit[channel]);
-  if (share >= 1.0) return;
-  ray.power[channel] = uniform_number(state) < share ? TRANSPORT_ROULETTE * push.unit[channel] : 0.0;
+// What a walk of one unit counts with where it is as important as where walks begin.
+float importance_here(TetPoint at, uint channel) {
+  return push.guided == 0u ? 1.0 : dot(at.l, importance_at_corners(at.tet, channel));
+}
+
+// Divides a walk that counts with `share` units, or some.
+void divide(inout Ray ray, float share) {
+  uint parts = min(uint(share), MOST_WAITING - waiting_count + 1u);
+  ray.power /= float(parts);
+  for (uint k = 1u; k < parts; ++k) {
+    waiting[waiting_count] = Waiting(ray, scattered);
+    ++waiting_count;
+  }
+}
+
+// Ends a walk that counts for little by chance, or divides one that counts for much, without bias.
+void weigh(inout Ray ray, uint channel) {
+  float worth = importance_here(ray.at, channel), share = worth * ray.power[channel] / push.unit[channel];
+  float least = push.guided == 0u ? TRANSPORT_ROULETTE : GUIDED_LEAST;
+  if (share < least) {
+    float kept = push.guided == 0u ? TRANSPORT_ROULETTE : 1.0;
+    ray.power[channel] = kept * uniform_number(state) < share ? kept * push.unit[channel] / worth : 0.0;
+  } else if (push.guided == 1u && share >= GUIDED_MOST) {
+    divide(ray, share);
+  }
 }
 
 void meet_surface(inout Ray ray, uint face) {
@@ -80,19 +110,21 @@ vec2 coefficients_in(uint tet, uint channel) {
 }
 
 // After a path through the present tet.
-void collide(inout Ray ray, uint channel, float albedo, Exit exit, float path) {
+void collide(inout Ray ray, uint channel, vec2 sigma, Exit exit, float path) {
   vec4 l = max(ray.at.l + path * exit.rate, vec4(0));
   ray.at.l = l / (l.x + l.y + l.z + l.w);
   ray.at.barred = vec4(0);
-  vec3 kept = albedo * ray.power;
+  vec3 kept = sigma.x / (sigma.x + sigma.y) * ray.power;
   absorbed += ray.power - kept;
   ray.power = kept;
-  ray.direction = scattered_from(ray.direction, push.g[channel], state);
+  vec3 from = ray.direction;
+  ray.direction = scattered_from(from, push.g[channel], state);
+  if (push.guided == 1u) ray.power *= turn_to_more(ray.at, from, channel, push.g[channel], sigma, ray.direction, state);
   scattered = true;
 }
 
+// To its end, but for parts of it that wait.
 void wander(Ray ray, uint channel) {
-  scattered = false;
   float depth = free_depth();
   for (uint step = 0u; step < CERTIFY_STEPS; ++step) {
     Exit exit = find_exit(ray.at, ray.direction);
@@ -101,9 +133,9 @@ void wander(Ray ray, uint channel) {
     vec2 sigma = coefficients_in(ray.at.tet, channel);
     float sigma_t = sigma.x + sigma.y, tau = sigma_t * exit.path;
     if (tau > depth) {
-      collide(ray, channel, sigma.x / sigma_t, exit, depth / sigma_t);
+      collide(ray, channel, sigma, exit, depth / sigma_t);
       depth = free_depth();
-      thin_out(ray, channel);
+      weigh(ray, channel);
     } else {
       depth -= tau;
       ray.at.l = exit_point(ray.at, exit);
@@ -114,22 +146,34 @@ void wander(Ray ray, uint channel) {
       }
       bar(ray.at, exit.place);
       meet_surface(ray, across - BODY.tet_count);
-      thin_out(ray, channel);
+      weigh(ray, channel);
     }
     if (ray.power[channel] == 0.0) return;
   }
   given_up += ray.power;
 }
 
-// As many walks as its power stands for, on average.
+void walk(Ray ray, uint channel) {
+  scattered = false;
+  waiting_count = 0u;
+  wander(ray, channel);
+  while (waiting_count > 0u) {
+    --waiting_count;
+    scattered = waiting[waiting_count].scattered;
+    wander(waiting[waiting_count].ray, channel);
+  }
+}
+
+// As many walks as its power stands for where it enters, on average.
 void go_in(Ray ray) {
   for (uint c = 0u; c < 3u; ++c) {
     if (push.walk[c] == 0.0) continue;
-    uint count = uint(ray.power[c] / push.walk[c] + uniform_number(state));
+    float worth = importance_here(ray.at, c);
+    uint count = uint(worth * ray.power[c] / push.walk[c] + uniform_number(state));
     Ray one = ray;
     one.power = vec3(0);
-    one.power[c] = push.unit[c];
-    for (uint k = 0u; k < count; ++k) wander(one, c);
+    one.power[c] = push.unit[c] / worth;
+    for (uint k = 0u; k < count; ++k) walk(one, c);
     walks += count;
   }
 }

@@ -16,7 +16,7 @@ from quadgraph import core
 from quadgraph.api.coefficients import Coefficients, coefficients_at
 from quadgraph.api.deformers import Deformer, as_dict
 from quadgraph.api.derivatives import ForwardModel, Views, forward_model
-from quadgraph.api.fields import Fluence, SurfaceField
+from quadgraph.api.fields import Fluence, SurfaceField, WalkedExitance
 from quadgraph.api.lights import Light, as_light
 from quadgraph.api.materials import Material, VolumeMaterial
 from quadgraph.api.mesh_fields import MeshFields, Part, of_body, of_surface
@@ -230,6 +230,10 @@ class Engine:
     def surface(self) -> SurfaceField:
         """Return the last solution on the surface. Raises InputError before a solve, and after shortest-path."""
         return SurfaceField(**self._engine.surface_field())
+
+    def walked_exitance(self) -> WalkedExitance:
+        """Return what the random walks found that certified the last solve. Raises InputError where none did."""
+        return WalkedExitance(*core.walked_exitance(self._engine))
 
     def fluence(self) -> Fluence:
         """Return the last solution in the body, at the unknowns of its method.

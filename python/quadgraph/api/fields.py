@@ -35,6 +35,21 @@ class SurfaceField:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class WalkedExitance:
+    """What random walks found to leave each outside face of the finest level, float32 (n, 3), W/mm^2.
+
+    exitance: of light that was scattered, of a material that says its g of all; standard_error: of that.
+    """
+
+    exitance: Floats
+    standard_error: Floats
+
+    def __repr__(self) -> str:
+        """Return the number of faces in one line."""
+        return f"WalkedExitance({len(self.exitance):,} faces)"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Fluence:
     """Fluence of scattered light in the body, at the points where the method has its unknowns, float32.
 

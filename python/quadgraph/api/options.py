@@ -32,7 +32,8 @@ class SolveOptions(TypedDict, total=False):
     many as it takes; max_iterations: per level; inter_reflection: whether it is computed; bounces: of that, 0 until
     nothing changes; correction: by sweeps of the transport equation; sweeps: how many, 0 until another one would change
     little; sweep_points: where one evaluates it at a time; sweep_seed: what these are drawn by; certify: seconds in
-    which random walks measure the error, 0 for none; active_layers: of a polygrid, 0 for all; path: of the method
+    which random walks measure the error, 0 for none; guided_walks: whether these may be led by importance;
+    active_layers: of a polygrid, 0 for all; path: of the method
     shortest-path.
     """
 
@@ -51,6 +52,7 @@ class SolveOptions(TypedDict, total=False):
     sweep_points: int
     sweep_seed: int
     certify: float
+    guided_walks: bool
     active_layers: int
     path: PathOptions
 
@@ -61,13 +63,15 @@ class MotionOptions(SolveOptions, total=False):
     warm: start from the last solution of the same method and model; smoothing: steps of a cycle before and after its
     correction, 0 to 2, 0 for what is cheapest; exchange_rows: faces of a body that deforms which look anew at what they
     see, in each solve, 0 for all; mean_rays: isotropic light by one ray from an origin instead of eight, rays that end
-    with 1% of their light instead of .01%, and fewer samples of shadows.
+    with 1% of their light instead of .01%, and fewer samples of shadows; carry: without correction, what the last one
+    made of the exitance is carried on as a factor.
     """
 
     warm: bool
     smoothing: int
     exchange_rows: int
     mean_rays: bool
+    carry: bool
 
 
 MOTION = MotionOptions.__annotations__.keys() - SolveOptions.__annotations__.keys()

@@ -114,8 +114,8 @@ class Certificate:
     """What random walks through the tets, which share nothing with the solver but these and their coefficients,
     measured of the exitance (docs/physics.md, "Certificate"). whole, unlit, dimmest: parts of the surface; walks: of
     one channel each; segments: tets that they crossed; given_up: share of the light in walks that were not followed to
-    their end; seconds: that it took; disagreement: where the stated error is less than what was measured, in words, or
-    "".
+    their end; seconds: that it took; guided: whether importance led them; disagreement: where the stated error is less
+    than what was measured, in words, or "".
     """
 
     whole: CertifiedPart
@@ -125,6 +125,7 @@ class Certificate:
     segments: float
     given_up: float
     seconds: float
+    guided: bool
     disagreement: str
 
     @classmethod
@@ -167,8 +168,9 @@ class Solution:
     to say of the error that was asked for; mesh_warning, model_warning, size_warning, phase_warning, light_warning,
     deformed: what else is to be said against the answer; exchange_age: solves by which what some face sees is behind
     the shape; correction: what sweeps did, None without; certificate: what random walks measured, None without
-    `certify`; path: of the method shortest-path, which has no levels, energy balance and estimates. Texts are empty
-    where there is nothing to say.
+    `certify`; carried: of a frame that carries a correction on as a factor the share of light and material that is as
+    it was, else None; path: of the method shortest-path, which has no levels, energy balance and estimates. Texts are
+    empty where there is nothing to say.
     """
 
     method: str
@@ -185,6 +187,7 @@ class Solution:
     algebraic: ErrorEstimate | None
     mesh_error: ErrorEstimate | None
     model_error: ErrorEstimate | None
+    carried: float | None
     light_error: ErrorEstimate | None
     phase_error: ErrorEstimate | None
     error: ErrorEstimate | None

@@ -18,7 +18,7 @@ from typing import Any, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from quadgraph.api.options import PictureOptions, SolveOptions
+from quadgraph.api.options import MotionOptions, PictureOptions
 from quadgraph.api.picture import Picture
 from quadgraph.api.scene import Scene
 from quadgraph.api.solution import ErrorEstimate, Solution
@@ -142,8 +142,9 @@ class FrameLoop:
             solving = wanted != self._solved
             if solving:
                 self._solved = None
-                corrected = bool(scene.solver.get("correction", True)) and self._pace.corrects
-                quick: SolveOptions = {"correction": corrected, "certify": 0.0}
+                wants = bool(scene.solver.get("correction", True))
+                corrected = wants and self._pace.corrects
+                quick: MotionOptions = {"correction": corrected, "carry": wants and not corrected, "certify": 0.0}
                 self._stage.engine.solve(motion=True, **(scene.solver | quick))
                 self._solved = wanted
                 self._pace.solved(time.perf_counter() - start, corrected)

@@ -103,7 +103,8 @@ def certificate_texts(found: dict) -> list[str]:
     names = {"whole": "whole", "unlit": "unlit", "dimmest": "dimmest third"}
     parts = ", ".join(f"{name} {of(found[part])}" for part, name in names.items() if found[part]["power_noise"] > 0)
     against = [f"warning: {found['disagreement']}"] if found["disagreement"] else []
-    walks = f"{found['walks'] / 1e6:.2g} million random walks in {found['seconds']:.1f} s"
+    kind = "guided" if found["guided"] else "random"
+    walks = f"{found['walks'] / 1e6:.2g} million {kind} walks in {found['seconds']:.1f} s"
     return [*against, f"error measured by {walks}: {parts}"]
 
 

@@ -75,6 +75,47 @@ TEST_CASE(
   CHECK(report.error->whole >= found.whole.error);
 }
 
+TEST_CASE("walks find the same power by any importance: the solution's own, one that is wrong by two, and none") {
+  for (const float scattering : {0.02f, 1.0f, 4.0f}) {
+    Scene scene({8, 4});
+    gpu::Material material{};
+    material.sigma_s_prime = scattering * glm::vec3(1, 0.5f, 2);
+    material.sigma_a = scattering * glm::vec3(0.3f, 0.05f, 0.01f);
+    material.eta = 1.3f;
+    material.g = {0, 0.8f, -0.4f};
+    scene.simulation.set_material(material);
+    scene.light([](const glm::vec3& normal) { return normal.z > 0.5f ? glm::vec3(1) : glm::vec3(0); });
+    const SolveOptions options{.correction = true, .sweeps = 1, .sweep_points = 2000, .certify = 1};
+    const SolveReport solved = scene.simulation.solve(options);
+    const auto measured = [&](bool guided, std::span<const glm::vec3> importance) {
+      SolveReport report = solved;
+      SolveOptions by = options;
+      by.guided_walks = guided;
+      scene.simulation.certify(by, report, {}, importance);
+      return *report.certificate;
+    };
+    // Some steps of two from vertex to vertex, and of ten from one side to the other.
+    std::vector<glm::vec3> wrong;
+    for (const glm::vec3& vertex : scene.simulation.present_level().vertices) {
+      wrong.push_back(glm::vec3(std::pow(10.0f, -vertex.z / 8)) *
+                      glm::vec3(1.0f + static_cast<float>(wrong.size() % 2)));
+    }
+    const Certificate plain = measured(false, {}), misled = measured(true, wrong), free = measured(true, {});
+    CHECK_FALSE(plain.guided);
+    CHECK(misled.guided);
+    CHECK(misled.whole.power_noise < 0.02);
+    CHECK(misled.unlit.power_noise < 0.03);
+    for (const Certificate& other : {misled, free}) {
+      CAPTURE(scattering);
+      CHECK(std::abs(other.whole.power - plain.whole.power) <
+            6 * std::hypot(other.whole.power_noise, plain.whole.power_noise));
+      CHECK(std::abs(other.unlit.power - plain.unlit.power) <
+            6 * std::hypot(other.unlit.power_noise, plain.unlit.power_noise));
+      CHECK(other.given_up == 0);
+    }
+  }
+}
+
 TEST_CASE("a mean cosine that is next to none scatters as none does") {
   const auto power_behind = [](float g) {
     Scene scene({8, 4});

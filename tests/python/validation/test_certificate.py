@@ -58,23 +58,26 @@ def test_its_powers_are_those_of_other_walks(tmp_path, case):
         engine.material = "sigma_s_prime={},sigma_a={},eta={}".format(*coefficients)
         engine.lights = [light]
         certificate = engine.solve(sweeps=1, certify=1.5).certificate
-        field = engine.surface()
+        field, found = engine.surface(), engine.walked_exitance()
     level = load_core().load(path).levels[0]
     surface = Surface(level.vertices.astype(np.float64), level.faces.astype(np.int64))
     q = field.q.sum(axis=1)
     unlit = q < 0.1 * np.average(q, weights=field.area)
     walked = truth_of(surface, coefficients, light, unlit.astype(int))
+    power = field.area @ found.exitance[:, 0]
+    assert power == pytest.approx((field.area @ field.exitance[:, 0]) / (1 + certificate.whole.power), rel=1e-4)
+    assert np.average(found.standard_error[:, 0] / power, weights=field.area) > 0
     solved = field.area * field.exitance[:, 0]
     parts = {"whole": (solved.sum(), walked.sum(axis=1))}
     if unlit.any():
         parts["unlit"] = (solved[unlit].sum(), walked[:, 1])
-    for name, (power, truths) in parts.items():
-        found = getattr(certificate, name)
-        expected = power / truths.mean() - 1
+    for name, (solved_power, truths) in parts.items():
+        part = getattr(certificate, name)
+        expected = solved_power / truths.mean() - 1
         noise = truths.std(ddof=1) / np.sqrt(BATCHES) / truths.mean()
         assert noise < 0.02
-        assert found.power_noise < 0.02
-        assert abs(found.power - expected) < Z * np.hypot(found.power_noise, noise * (1 + expected)), name
+        assert part.power_noise < 0.02
+        assert abs(part.power - expected) < Z * np.hypot(part.power_noise, noise * (1 + expected)), name
 
 
 RADIUS, ALBEDO, ETA = 3.0, 0.6, 1.3  # reduced mean free paths; a dark, thin body
@@ -147,6 +150,9 @@ def test_what_cannot_be_certified_is_refused_and_what_was_not_asked_for_is_not_t
     path = write_levels(tmp_path / "ball.qgraph", [icosphere(2, 10), icosphere(1, 10)])
     with quadgraph.Engine(path, device="cpu") as engine:
         engine.material, engine.lights = "ketchup", [SUN]
+        engine.solve(sweeps=1)
+        with pytest.raises(InputError, match="certified"):
+            engine.walked_exitance()
         for options in ({"correction": False}, {"method": "quadgraph-fv"}, {"source": "diffuse"}):
             with pytest.raises(InputError, match="certif"):
                 engine.solve(certify=1, **options)

@@ -51,12 +51,13 @@ class UnseenAnswers:
 @dataclass(frozen=True)
 class UnseenSetting:
     """sweeps: a solve for each, None for the engine's own choice; device: as Engine takes it; motion: in frames, too;
-    for_material: bake for the case's own material.
+    carry: those without sweeps; for_material: bake for the case's own material.
     """
 
     sweeps: Sequence[int | None] = (None,)
     device: str = ""
     motion: bool = False
+    carry: bool = False
     for_material: bool = False
 
 
@@ -76,7 +77,7 @@ def answers(case: UnseenCase, patch: np.ndarray, how: UnseenSetting, folder: Pat
         triangle, apart = _triangle_of(case, engine.surface())
         of_face = patch[triangle]
         found = [_answer(engine, of_face, wanted, _options(wanted, case)) for wanted in how.sweeps]
-        frames = _moved(engine, case, of_face) if how.motion else None
+        frames = _moved(engine, case, of_face, how.carry) if how.motion else None
     return UnseenAnswers(int(report.levels[0]["tets"]), float(apart.max()), found, frames)
 
 
@@ -94,7 +95,7 @@ def _answer(engine: Engine, of_face: np.ndarray, sweeps: int | None, options: di
     return UnseenAnswer(sweeps, _by_patch(engine, of_face), printed, solution.model, seconds)
 
 
-def _moved(engine: Engine, case: UnseenCase, of_face: np.ndarray) -> UnseenMotion:
+def _moved(engine: Engine, case: UnseenCase, of_face: np.ndarray, carry: bool) -> UnseenMotion:
     shown: list[UnseenMedium] = []
 
     def show(medium: UnseenMedium, light: Light) -> None:
@@ -103,7 +104,7 @@ def _moved(engine: Engine, case: UnseenCase, of_face: np.ndarray) -> UnseenMotio
             shown[:] = [medium]
         engine.lights = [light]
 
-    return unseen_motion.moved(engine, case, show, lambda: _by_patch(engine, of_face), _options(None, case))
+    return unseen_motion.moved(engine, case, show, lambda: _by_patch(engine, of_face), _options(None, case), carry)
 
 
 def _by_patch(engine: Engine, of_face: np.ndarray) -> np.ndarray:

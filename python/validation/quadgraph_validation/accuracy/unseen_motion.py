@@ -44,23 +44,26 @@ class UnseenMotion:
     plain: float
 
 
-def moved(engine: Engine, case: UnseenCase, show: Setter, seen: Seen, options: dict[str, Any]) -> UnseenMotion:
-    """Run the frames. show: sets material and light; options: of every solve. Raises what solves raise, and InputError
-    for a case with a sky.
+def moved(
+    engine: Engine, case: UnseenCase, show: Setter, seen: Seen, options: dict[str, Any], carry: bool
+) -> UnseenMotion:
+    """Run the frames. show: sets material and light; options: of every solve; carry: frames without sweeps. Raises what
+    solves raise, and InputError for a case with a sky.
     """
+    quick = options | {"correction": False, "carry": True} if carry else options
     show(*at_frame(case, -1))
     engine.solve(**options)
     times, segments = [], []
     before = now = np.empty(0)
     for frame in range(FRAMES):
         show(*at_frame(case, frame))
-        seconds, solution = _timed(engine, options)
+        seconds, solution = _timed(engine, quick)
         times.append(seconds)
         segments.append(0.0 if solution.correction is None else solution.correction.segments)
         before, now = now, seen()
     printed = stated(solution)
     for _ in range(STILL):
-        engine.solve(motion=True, **options)
+        engine.solve(motion=True, **quick)
     still = seen()
     exact = []
     for frame in (FRAMES - 2, FRAMES - 1):

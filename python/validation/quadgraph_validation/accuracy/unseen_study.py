@@ -24,7 +24,8 @@ if TYPE_CHECKING:
     from quadgraph_validation.truth.unseen_truth import UnseenTruth
 
 _UNLIT = 0.1  # of the mean q: below it a patch is unlit, as a face is in the engine's report
-_ASKED = ("seed", "lights", "inter_reflection", "walks", "for_material", "mean_free_paths")  # of a run, in its record
+# Of a run, in its record.
+_ASKED = ("seed", "lights", "inter_reflection", "walks", "for_material", "carry", "mean_free_paths")
 _FEW = 5  # patches: a part with fewer is not judged
 
 
@@ -33,8 +34,8 @@ class UnseenRun:
     """What is judged. count: of seeds from the first; walks: of the truth of each; truths: folder where these are kept;
     sweeps: what solves are asked for, None for the engine's own choice; device: as Engine takes it; lights: beams or
     sky; inter_reflection: in the engine and in the truth; motion: also in frames whose light and material change;
-    for_material: bake for the case's own material in place of for none; mean_free_paths: least and most of them across
-    a body's longest side.
+    carry: those without sweeps; for_material: bake for the case's own material in place of for none; mean_free_paths:
+    least and most of them across a body's longest side.
     """
 
     seed: int
@@ -46,6 +47,7 @@ class UnseenRun:
     lights: str = "beams"
     inter_reflection: bool = True
     motion: bool = False
+    carry: bool = False
     for_material: bool = False
     mean_free_paths: tuple[float, float] = unseen_cases.MEAN_FREE_PATHS
 
@@ -80,6 +82,8 @@ def check(wanted: UnseenRun) -> None:
     least, most = wanted.mean_free_paths
     if least > most:
         raise InputError(f"--mean-free-paths: {least:g} {most:g} found; give the smaller number first")
+    if wanted.carry and not wanted.motion:
+        raise InputError("--carry: without --motion, of whose frames it is; give both")
     if wanted.motion and wanted.lights != "beams":
         raise InputError(f"--motion: with --lights {wanted.lights}, which does not turn; take --lights beams")
 
@@ -102,7 +106,7 @@ def judged(seed: int, wanted: UnseenRun, tell: Callable[[str, int], None]) -> di
     truth = unseen_truth.make(case, wanted.walks, wanted.truths, lambda walks: tell("random walks", walks))
     tell("engine", wanted.walks)
     with tempfile.TemporaryDirectory(prefix="quadgraph-unseen-") as folder:
-        how = UnseenSetting(wanted.sweeps, wanted.device, wanted.motion, wanted.for_material)
+        how = UnseenSetting(wanted.sweeps, wanted.device, wanted.motion, wanted.carry, wanted.for_material)
         found = unseen_engine.answers(case, truth.patch, how, Path(folder))
     parts = parts_of(truth, found.answers[-1].exitance)
     row = {

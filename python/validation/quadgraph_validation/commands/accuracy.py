@@ -148,6 +148,11 @@ def _add_unseen_options(group: argparse._ArgumentGroup) -> None:
         help="also 30 frames in which the light turns by 3 degrees each and the material is edited",
     )
     group.add_argument(
+        "--carry",
+        action="store_true",
+        help="with --motion: frames have no sweeps, and carry on what the solve before them was corrected by",
+    )
+    group.add_argument(
         "--seconds",
         type=positive_float,
         metavar="S",
@@ -245,6 +250,7 @@ def _run_on_engine(study: ModuleType, args: argparse.Namespace) -> dict:
             args.lights,
             args.inter_reflection,
             args.motion,
+            args.carry,
             args.for_material,
             *([tuple(args.mean_free_paths)] if args.mean_free_paths else []),
         )
