@@ -128,3 +128,14 @@ def test_steps_of_a_material_within_triangles_are_told_of_about_as_they_are(tmp_
     assert true > 0.03
     assert 1 / 2.5 < stated[0] / true < 2.5
     assert stated[1] < 0.6 * stated[0]
+
+
+def test_a_pattern_of_two_alike_adds_nothing_and_one_of_two_others_much(engine):
+    pattern = "sigma_s_prime=1,sigma_a=.02,pattern=checker,period=5,eta=1.3,second_sigma_s_prime=1,second_sigma_a="
+    stated = []
+    for material in (MATERIAL, f"{pattern}.02", f"{pattern}.2"):
+        engine.material = material
+        engine.solve(**QUICK)
+        stated.append(shown(engine, LIT).error.whole)
+    assert stated[1] == pytest.approx(stated[0], rel=0.05)
+    assert stated[2] > 1.5 * stated[0]
