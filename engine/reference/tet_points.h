@@ -1,6 +1,7 @@
-// A place in every tet other than its middle.
+// Places in every tet other than its middle.
 #pragma once
 
+#include <cstdint>
 #include <glm/vec3.hpp>
 #include <vector>
 
@@ -8,7 +9,11 @@
 
 namespace quadgraph {
 
-// A point in each tet of a level, mm, drawn evenly over its volume; always the same.
+// Points of each tet. A picture tells by more than one what few, large tets hold.
+constexpr std::uint32_t points_of_a_tet = 4;
+
+// Points in each tet of a level, mm, drawn evenly over its volume, always the same: one of every tet, then another one
+// of every tet, and so on, tets * points_of_a_tet.
 std::vector<glm::vec3> points_in_tets(const Level& level);
 
 }  // namespace quadgraph

@@ -88,7 +88,8 @@ void Engine::set_materials(std::span<const BodyMaterial> materials) {
   Simulation& simulation = self.levels();
   const std::vector<Level>& levels = self.graph.levels();
   const std::vector<gpu::Optical> elsewhere = coefficients(
-      levels[0], points_in_tets(levels[0]), [&](std::uint32_t tet) { return levels[0].body_of_tet(tet); }, materials);
+      levels[0], points_in_tets(levels[0]),
+      [&](std::uint32_t i) { return levels[0].body_of_tet(i % levels[0].tet_count()); }, materials);
   std::vector<float> eta;
   for (const BodyMaterial& material : materials) eta.push_back(material.eta);
   for (std::uint32_t i = 0; i < levels.size(); ++i) {

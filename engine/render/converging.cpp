@@ -142,11 +142,11 @@ ErrorEstimate Converging::light_left() const {
 }
 
 std::string Converging::limit(double whole) const {
-  const double angle = picture_error_of({});
-  const auto of_picture = [&](const ErrorEstimate& part) {
-    return std::sqrt(std::max(0.0, std::pow(picture_error_of(part), 2) - angle * angle));
-  };
-  const double mesh = of_picture(or_none(found_.solve.mesh_error)), light = of_picture(light_left());
+  const auto without = [](double all, double part) { return std::sqrt(std::max(0.0, all * all - part * part)); };
+  const double always = picture_error_of({}), medium = engine_.medium_of_picture(), angle = without(always, medium);
+  const auto of_picture = [&](const ErrorEstimate& part) { return without(picture_error_of(part), always); };
+  const double mesh = std::hypot(of_picture(or_none(found_.solve.mesh_error)), medium);
+  const double light = of_picture(light_left());
   const double sweeps = of_picture(left_by_sweeps(*found_.solve.correction)), noise = found_.steps.back().noise;
   const std::string said =
       percent_text(whole) + " is reached, and more sweeps and samples would leave " + percent_text(found_.least) + ": ";
@@ -158,8 +158,7 @@ std::string Converging::limit(double whole) const {
   }
   if (most == mesh) {
     return said + "the mesh's part is " + percent_text(mesh) +
-           "; a finer file has less: of more vertices where the material changes within its triangles, and of bake "
-           "--for-material where it changes deeper";
+           "; a finer file has less: of bake --for-material where the material changes in space, or of more vertices";
   }
   if (most == light)
     return said + "the light's part is " + percent_text(light) + "; fewer lights have finer shadow maps";

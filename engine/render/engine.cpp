@@ -273,6 +273,11 @@ std::optional<ErrorEstimate> Engine::picture_error(const ErrorEstimate& exitance
   return quadgraph::picture_error(implementation_->device, implementation_->shown(), exitance);
 }
 
+double Engine::medium_of_picture() const {
+  const auto turn = implementation_->in_use.take();
+  return quadgraph::medium_of_picture(implementation_->device, implementation_->shown());
+}
+
 std::optional<ErrorEstimate> Engine::picture_error() {
   const auto turn = implementation_->in_use.take();
   auto& self = *implementation_;

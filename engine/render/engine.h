@@ -198,6 +198,9 @@ class Engine {
   // What it would be off by with another error of the exitance.
   std::optional<ErrorEstimate> picture_error(const ErrorEstimate& exitance) const;
 
+  // Of that, the part of a material that changes within tets (engine/render/picture/picture_error.h).
+  double medium_of_picture() const;
+
   // What the colours of the last one mean; nothing if it shows the body as it looks.
   const std::optional<Legend>& legend() const;
 

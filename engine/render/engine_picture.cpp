@@ -1,7 +1,10 @@
 // What an engine draws of the body.
+#include "engine/reference/tet_points.h"
 #include "engine/render/engine_implementation.h"
 
 namespace quadgraph {
+
+static_assert(gpu::DOUBT_SAMPLES == points_of_a_tet, "a picture is compared with all that is known of a tet");
 
 Radiance Engine::Implementation::draw_surface(const Camera& camera, const RenderOptions& render, std::uint32_t frame) {
   std::optional<PlacedRoughness> placed;
@@ -35,7 +38,9 @@ Radiance Engine::Implementation::draw_surface(const Camera& camera, const Render
   }
   if (leaves != Radiance::lambertian) {
     const GatherField& field = gather(leaves == Radiance::single ? Gather::single : Gather::scaled);
-    view_rays.emplace(field, triangle_face, leaves == Radiance::gathered ? simulation->surface_share() : nullptr);
+    const bool whole = leaves == Radiance::gathered;
+    view_rays.emplace(field, triangle_face, whole ? simulation->surface_share() : nullptr,
+                      whole ? simulation->elsewhere() : nullptr);
   }
   add_all(rasteriser.run(RasterInput{.mesh = mesh,
                                      .finest = simulation->level(0),

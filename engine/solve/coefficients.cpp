@@ -59,7 +59,7 @@ void Coefficients::set(const gpu::Material& material) {
 void Coefficients::set(std::uint32_t number, std::span<const gpu::Optical> optical, std::span<const float> eta,
                        std::span<const SurfaceSample> samples, std::span<const gpu::Optical> elsewhere) {
   check_optical(optical, rest_[number].node_count());
-  if (!elsewhere.empty()) check_optical(elsewhere, rest_[number].tet_count());
+  if (!elsewhere.empty()) check_optical(elsewhere, points_of_a_tet * rest_[number].tet_count());
   refractions_.set(eta);
   if (material_) std::fill(albedo_.begin(), albedo_.end(), std::nullopt);
   material_.reset();

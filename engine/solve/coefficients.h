@@ -48,7 +48,7 @@ class Coefficients {
   // One entry per sample of level `number`.
   std::vector<gpu::Optical> at(std::uint32_t number, std::span<const SurfaceSample> samples);
 
-  // One entry per tet of the finest level, at points_in_tets; none where they are even, or not known there.
+  // Of the finest level, at points_in_tets; none where they are even, or not known there.
   const std::vector<gpu::Optical>& elsewhere();
 
   // Buffers may hold anything: they are evaluated again.

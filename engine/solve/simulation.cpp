@@ -121,6 +121,7 @@ void Simulation::make_room(const SolveOptions& options, bool gather) {
 SolveReport Simulation::solve(const SolveOptions& options, const std::function<void()>& check,
                               const std::function<void(bool)>& light) {
   implementation_->certified = false;
+  implementation_->elsewhere = {};
   SolveReport report = implementation_->solve(options, check, light);
   const KnownAngles by_sweeps = options.warm ? KnownAngles::swept : KnownAngles::measured;
   const KnownAngles known = report.correction ? by_sweeps : KnownAngles::reduced;
@@ -151,7 +152,9 @@ void Simulation::state_medium_error(const SolveOptions& options, SolveReport& re
   if (there.empty()) return;
   const auto here = device::download<gpu::Optical>(self.device, self.levels[0].optical);
   const auto fluence = device::download<glm::vec3>(self.device, self.correction->fluence());
-  const std::vector<glm::vec3> load = medium_load(present_level(), here, there, fluence);
+  const Level& level = present_level();
+  const std::vector<glm::vec3> load = medium_load(level, here, std::span(there).first(level.tet_count()), fluence);
+  self.elsewhere = device::upload<gpu::Optical>(self.device, there, "material/elsewhere");
   perturb(options, report, [&](const PerturbedSolution& solution) {
     add_medium_error(report, medium_error(*self.perturbation, solution, load));
   });
@@ -248,6 +251,11 @@ const device::Buffer& Simulation::vertex_exitance() const {
 
 const device::Buffer& Simulation::vertex_unscattered() const {
   return implementation_->results.vertex_unscattered();
+}
+
+const device::Buffer* Simulation::elsewhere() const {
+  const Implementation& self = *implementation_;
+  return self.corrected && self.elsewhere.size() > 0 ? &self.elsewhere : nullptr;
 }
 
 const device::Buffer* Simulation::surface_share() const {

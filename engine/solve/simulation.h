@@ -69,7 +69,7 @@ class Simulation {
   void set_material(const gpu::Material& material);
 
   // Coefficients instead of a material, one per node of `level` (inner, then surface); wanted for every level, and kept
-  // until set_material. `elsewhere`: of the finest level, one per tet at points_in_tets, by which the error of having
+  // until set_material. `elsewhere`: of the finest level, one at each of points_in_tets, by which the error of having
   // one value in each tet is told; none where they are not known. Throws InputError on a wrong size or value.
   void set_optical(std::uint32_t level, std::span<const gpu::Optical> optical, float eta,
                    std::span<const gpu::Optical> elsewhere = {});
@@ -182,6 +182,9 @@ class Simulation {
 
   // SurfaceShare per surface vertex of level 0, of a last solve that was corrected; null otherwise.
   const device::Buffer* surface_share() const;
+
+  // Optical at each of points_in_tets of level 0, of a last solve whose error has a part of the medium; null otherwise.
+  const device::Buffer* elsewhere() const;
 
   // Whether all of the last solve's radiance can be gathered along view rays (see gathers).
   bool can_gather() const;

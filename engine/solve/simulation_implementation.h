@@ -55,6 +55,7 @@ struct Simulation::Implementation {
   std::optional<Perturbation> perturbation;       // the same
   std::optional<LightError> light_error;          // the same
   bool corrected = false;                         // the last solution is
+  device::Buffer elsewhere;                       // Optical at points_in_tets, of the last solution's medium error
   std::vector<gpu::Optical> corrected_optical;    // at the surface, of the last correction
   std::vector<float> corrected_eta;               // the same
   glm::vec3 corrected_g{0};                       // the same

@@ -12,6 +12,7 @@
 #include "engine/device/device.h"
 #include "engine/device/memory.h"
 #include "engine/devices/open_device.h"
+#include "engine/reference/tet_points.h"
 #include "engine/render/engine.h"
 #include "engine/scene/cut_json.h"
 #include "engine/scene/measured_error.h"
@@ -246,7 +247,7 @@ void bind_level_setters(py::class_<Engine>& bound) {
              const std::optional<std::pair<FloatArray, FloatArray>>& elsewhere) {
             const Level& of = level_of(engine.graph(), level);
             std::vector<gpu::Optical> there;
-            if (elsewhere) there = optical_from(elsewhere->first, elsewhere->second, of.tet_count());
+            if (elsewhere) there = optical_from(elsewhere->first, elsewhere->second, points_of_a_tet * of.tet_count());
             engine.set_optical(level, optical_from(sigma_s_prime, sigma_a, of.node_count()), eta, there);
           },
           py::arg("level"), py::arg("sigma_s_prime"), py::arg("sigma_a"), py::arg("eta"),

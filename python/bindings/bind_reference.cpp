@@ -166,7 +166,8 @@ void bind_reference(py::module_& module) {
   module.def(
       "points_in_tets",
       [](const QuadGraph& graph, std::uint32_t level) { return own(points_in_tets(level_of(graph, level))); },
-      py::arg("graph"), py::arg("level"), "(n_t, 3) mm, a point in each tet (engine/reference/tet_points.h).");
+      py::arg("graph"), py::arg("level"),
+      "(4 n_t, 3) mm, points in each tet, one of all after the other (engine/reference/tet_points.h).");
   module.def("evaluate_material", &coefficients_at_nodes, py::arg("graph"), py::arg("level"), py::arg("material"),
              "sigma_s_prime and sigma_a, (n, 3) in 1/mm, at the nodes.");
   module.def("assemble", &assemble_dict, py::arg("graph"), py::arg("level"), py::arg("method"),

@@ -77,7 +77,7 @@ PixelDoubt doubt_at(uint face, vec3 l, Leaving light) {
   }
   Refraction body = refraction_behind(BODY.face_kinds, face);
   vec3 diffuse = light.through / body.radiance_norm * exitance;
-  return PixelDoubt(area.y, area.z, summed(light.radiance - diffuse), 1.0);
+  return PixelDoubt(area.y, area.z, summed(light.radiance - diffuse), 1.0, 0.0);
 }
 
 // Whether the body behind a face is clear in some channel: light crosses the most of it in few mean free paths.
@@ -102,6 +102,18 @@ Leaving through_facets(uint face, vec3 l, vec3 v, vec3 normal, float roughness, 
   return Leaving(share * sum.radiance, share * sum.seen, share * sum.through);
 }
 
+// Whether the pixel is one of those in which two samples of the material are compared, as DOUBT_STRIDE says.
+bool is_compared(uint index) {
+  uint x = index % push.picture_width, y = index / push.picture_width;
+  return x % DOUBT_STRIDE == 0u && y % DOUBT_STRIDE == 0u;
+}
+
+// Which sample of the material the block of a pixel is compared with.
+uint sample_of_block(uint index) {
+  uint x = index % push.picture_width / DOUBT_BLOCK, y = index / push.picture_width / DOUBT_BLOCK;
+  return hash(x + (y << 16u)) % DOUBT_SAMPLES;
+}
+
 // One view ray for all samples that lie together: where faces are larger than pixels, one per pixel. Samples are read
 // again where they are needed: an array of them would be slow to index.
 void main() {
@@ -112,7 +124,8 @@ void main() {
   for (uint k = 0u; k < 4u; ++k) waiting |= push.samples[0].at[sample_of(pixel, k)].w > 0.0 ? 1u << k : 0u;
   bool doubted = uvec2(push.doubt) != uvec2(0);
   vec3 scattered = vec3(0), specular = vec3(0), seen = vec3(0), unscattered = vec3(0);
-  PixelDoubt doubt = PixelDoubt(0.0, 0.0, 0.0, 0.0);
+  PixelDoubt doubt = PixelDoubt(0.0, 0.0, 0.0, 0.0, 0.0);
+  bool compared = doubted && uvec2(scene.elsewhere[0]) != uvec2(0) && is_compared(pixel.index);
   float alpha = 0.0;
   while (waiting != 0u) {
     uint k_first = uint(findLSB(waiting));
@@ -134,7 +147,8 @@ void main() {
     normal = normalize(normal);
     vec3 l = coordinates_in(first.face, position);
     float roughness = push.transmission < 0.0 ? first.roughness : push.transmission;
-    Leaving light = through_facets(first.face, l, v, normal, roughness, hash(4u * pixel.index + k_first));
+    uint start = hash(4u * pixel.index + k_first);
+    Leaving light = through_facets(first.face, l, v, normal, roughness, start);
     scattered += share * light.radiance;
     seen += share * light.seen;
     unscattered += share * light.seen * radiance_behind(-v);
@@ -145,6 +159,12 @@ void main() {
     doubt.dimmest += share * here.dimmest;
     doubt.angle += share * here.angle;
     doubt.covered += share * here.covered;
+    if (!compared) continue;
+    Opticals middle = BODY.optical;
+    BODY.optical = scene.elsewhere[sample_of_block(pixel.index)];
+    Leaving other = through_facets(first.face, l, v, normal, roughness, start);
+    BODY.optical = middle;
+    doubt.medium += share * summed(other.radiance - light.radiance);
   }
   vec3 layers[PICTURE_LAYERS];
   layers[0] = scattered;

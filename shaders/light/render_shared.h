@@ -62,6 +62,12 @@ struct NormalMapRef {
   uint by_mesh;  // 1: by coordinates of the mesh
 };
 
+// How far a picture depends on where in tets the material is taken is told by blocks of pixels, of so many along a
+// side, in each by one of so many samples of the material and by one pixel of so many along a row and down.
+const uint DOUBT_BLOCK = 4u;
+const uint DOUBT_SAMPLES = 4u;
+const uint DOUBT_STRIDE = 2u;
+
 // All that surface.vert and surface.frag read.
 struct SurfaceScene {
   mat4 clip_from_offset;  // of what is `origin` (mm) less than a place: engine/render/display/camera.h
@@ -89,7 +95,8 @@ struct SurfaceScene {
   QG_REF(Uints) triangle_face;  // per display triangle: outside face of level 0
   QG_REF(GatherPoints) points;
   QG_REF(GatherScales) scale;
-  QG_REF(SurfaceShares) share;  // per surface vertex of level 0; null: errors are not told by part
+  QG_REF(SurfaceShares) share;                // per surface vertex of level 0; null: errors are not told by part
+  QG_REF(Opticals) elsewhere[DOUBT_SAMPLES];  // per tet: the material at other places in it; null: it changes in none
   SolidRef solid;
   NormalMapRef normal_map;  // with VARIANT_NORMAL_MAP
 };
@@ -116,6 +123,7 @@ struct PixelDoubt {
   float unlit, dimmest;  // shares of the pixel that are of these parts of the surface
   float angle;           // W/(mm^2 sr), channels together: what the radiance is more than that of a diffuser
   float covered;         // share of the pixel that the body covers, without the ground
+  float medium;  // W/(mm^2 sr), channels together: what it is more with the material of elsewhere, one pixel of four
 };
 #ifndef __cplusplus
 QG_ARRAY(PixelDoubts, PixelDoubt);

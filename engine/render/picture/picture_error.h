@@ -2,7 +2,9 @@
 //
 // Each pixel has the error of the exitance of the part of the surface that it shows. What leaves in a direction is
 // known less well than what leaves in all of them: of what view rays make of the angle, the difference from a diffuser
-// with the same exitance, a share `angle_share` is counted as wrong.
+// with the same exitance, a share `angle_share` is counted as wrong. Where the material changes within tets, the view
+// rays of a block of pixels gather once more with the material of other places in the tets: where these are larger than
+// the block, the picture is off by as much as it changes by.
 #pragma once
 
 #include <optional>
@@ -22,5 +24,8 @@ constexpr double angle_share = 0.08;
 // (has_doubt).
 std::optional<ErrorEstimate> picture_error(device::Device& device, const PictureBuffers& picture,
                                            const ErrorEstimate& exitance);
+
+// Of that, the part of a material that changes within tets, of all pixels that show the body; 0 where nothing is known.
+double medium_of_picture(device::Device& device, const PictureBuffers& picture);
 
 }  // namespace quadgraph

@@ -63,6 +63,7 @@ gpu::SurfaceScene scene(const RasterInput& input, const Camera& camera) {
                           .points = 0,
                           .scale = 0,
                           .share = 0,
+                          .elsewhere = {},
                           .solid = {},
                           .normal_map = normal_map(input.placed_normals)};
   if (input.gather != nullptr) {
@@ -71,6 +72,10 @@ gpu::SurfaceScene scene(const RasterInput& input, const Camera& camera) {
     scene.scale = input.gather->field.scale().address();
     scene.solid = input.gather->field.solid();
     if (input.gather->share != nullptr) scene.share = input.gather->share->address();
+    const device::Buffer* elsewhere = input.gather->elsewhere;
+    for (std::uint64_t k = 0; elsewhere != nullptr && k < gpu::DOUBT_SAMPLES; ++k) {
+      scene.elsewhere[k] = elsewhere->address() + k * (elsewhere->size() / gpu::DOUBT_SAMPLES);
+    }
   }
   return scene;
 }

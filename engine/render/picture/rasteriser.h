@@ -25,6 +25,7 @@ struct GatherView {
   const GatherField& field;
   const device::Buffer& triangle_face;  // display_faces.h
   const device::Buffer* share;          // SurfaceShare per surface vertex of the finest level; null: unknown
+  const device::Buffer* elsewhere;      // Simulation::elsewhere; null: unknown, or the same everywhere
 };
 
 // A RoughnessMap on the device.

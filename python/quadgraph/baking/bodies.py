@@ -176,11 +176,13 @@ def _write(
     options: BakeOptions,
     report: BakeReport,
 ) -> None:
+    with report.timed("surface"):
+        meshes = [pipeline.shown(each, options) for each in prepared]
     with report.timed("transfers"):
         content = joined.join(
             [
                 sections.whole_file([level.graph for level in levels], each.surface, normals=each.normals)
-                for each, levels in zip(prepared, made, strict=True)
+                for each, levels in zip(meshes, made, strict=True)
             ]
         )
     graphs = joined.graphs(content)

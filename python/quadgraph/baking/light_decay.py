@@ -38,7 +38,7 @@ def decay_rates(material: str | core.Volume) -> tuple[float, ...]:
     """
     material = opened(material) if isinstance(material, str) else material
     if isinstance(material, core.Volume):
-        of_cells = np.quantile(_rate(*material.cells), _SHARES, axis=0)
+        of_cells = np.quantile(falling(*material.cells), _SHARES, axis=0)
         return tuple(sorted({float(rate) for rate in of_cells.ravel() if rate > 0}))
     members = json.loads(core.material_json(material))
     rates: set[float] = set()
@@ -46,8 +46,13 @@ def decay_rates(material: str | core.Volume) -> tuple[float, ...]:
         two = (_three(members.get(prefix + name)) for name in ("sigma_s_prime", "sigma_a"))
         for s, a in zip(*two, strict=True):
             if s + a > 0:
-                rates.add(float(_rate(s, a)))
+                rates.add(float(falling(s, a)))
     return tuple(sorted(rates))
+
+
+def is_even(material: str | core.Volume) -> bool:
+    """Whether it is the same everywhere, by its text: a volume is not, whatever its cells hold. Raises InputError."""
+    return isinstance(material, str) and json.loads(core.material_json(material))["pattern"] == "none"
 
 
 def change_length(material: str | core.Volume, surface: Surface) -> float:
@@ -57,13 +62,13 @@ def change_length(material: str | core.Volume, surface: Surface) -> float:
     most of the body, but by e at least, so that a slight change counts little. Raises InputError as `decay_rates`.
     """
     material = opened(material) if isinstance(material, str) else material
-    if isinstance(material, str) and json.loads(core.material_json(material))["pattern"] == "none":
+    if is_even(material):
         return math.inf
     longest = 0.75 * mean_chord(surface)
     ways = _ways(surface, longest)
-    scattering, absorption = _coefficients(material, surface, ways.reshape(-1, 3))
+    scattering, absorption = coefficients(material, surface, ways.reshape(-1, 3))
     spread = 2 / (1.5 * mean_chord(surface))
-    found = scattering + absorption, np.hypot(_rate(scattering, absorption), spread)
+    found = scattering + absorption, np.hypot(falling(scattering, absorption), spread)
     logarithms = np.log(np.maximum(np.concatenate(found, axis=1), 1e-6)).reshape(*ways.shape[:2], -1)
     whole = np.maximum(np.ptp(logarithms, axis=(0, 1)), math.log(_AS_MUCH))
     changes = np.abs(np.diff(logarithms, axis=1)).sum(axis=1).mean(axis=0) / whole
@@ -80,15 +85,18 @@ def _ways(surface: Surface, longest: float) -> _Array:
     return corners.mean(axis=1)[:, None] + along[:, None] * inward[:, None]
 
 
-def _coefficients(material: str | core.Volume, surface: Surface, points: _Array) -> tuple[_Array, _Array]:
+def coefficients(
+    material: str | core.Volume, surface: Surface, points: _Array, on_surface: bool = False
+) -> tuple[_Array, _Array]:
+    """sigma_s_prime and sigma_a (n, 3), 1/mm, at points (n, 3), mm, in a body of that surface or on it."""
     if isinstance(material, core.Volume):
         return material.at(points, (surface.vertices.min(axis=0) + surface.vertices.max(axis=0)) / 2)
-    depths, _ = Depths(surface).at(points)
+    depths = np.zeros(len(points)) if on_surface else Depths(surface).at(points)[0]
     return core.material_at(core.Material(material), points, depths)
 
 
-def _rate(scattering: npt.ArrayLike, absorption: npt.ArrayLike) -> _Array:
-    """No faster than what is not scattered: diffusion alone would say more where much is absorbed."""
+def falling(scattering: npt.ArrayLike, absorption: npt.ArrayLike) -> _Array:
+    """Rate, 1/mm, at which light falls; no faster than what is not scattered: diffusion says more in dark media."""
     s, a = np.asarray(scattering, np.float64), np.asarray(absorption, np.float64)
     return np.minimum(np.sqrt(3 * a * (s + a)), s + a)
 

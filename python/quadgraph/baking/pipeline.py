@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from quadgraph.baking import inside
+from quadgraph.baking import inside, surface_changes
 from quadgraph.baking.inside import LevelSizes
 from quadgraph.baking.report import BakeReport
 from quadgraph.base import child_process, outputs
@@ -60,10 +60,11 @@ class BakeOptions:
     simulation surface is cut into four, curved where the body is smooth; interior: how large tets are deep inside,
     "auto" by the shape, "surface" as the surface makes them, or an edge length in mm (of coarser levels twice that,
     four times, ...), None for "auto" with tetgen and "surface" with cgal; for_materials: materials that they are sized
-    for instead, texts or files of volumes; visibility_rays: from each face of one level, to find what sees what, 0 for
-    none; normals: of the displayed surface, "file" for those of the mesh file where it gives some that can be true,
-    "angle" for smooth ones up to edges of 40 degrees, as all others get; limits hold for each run of the mesher; front:
-    azimuth in degrees from where the body is shown when nobody says so, None for `quadgraph.mesh.front.azimuth`.
+    for instead, texts or files of volumes, and for which triangles are cut where they change (`surface_changes`);
+    visibility_rays: from each face of one level, to find what sees what, 0 for none; normals: of the displayed surface,
+    "file" for those of the mesh file where it gives some that can be true, "angle" for smooth ones up to edges of 40
+    degrees, as all others get; limits hold for each run of the mesher; front: azimuth in degrees from where the body is
+    shown when nobody says so, None for `quadgraph.mesh.front.azimuth`.
     """
 
     unit: str | None = None
@@ -185,12 +186,14 @@ def write(
     budget: what the bake measured for an error that was asked for, kept in the file.
     """
     graphs = [level.graph for level in levels]
+    with report.timed("surface"):
+        displayed = shown(prepared, options)
     with report.timed("exchange"):
         seen = exchange.bake(graphs, options.visibility_rays)
     if seen is not None:
         report.exchange = exchange.summary(seen, graphs[seen.level].boundary)
     with report.timed("transfers"):
-        content = sections.whole_file(graphs, prepared.surface, seen, prepared.normals)
+        content = sections.whole_file(graphs, displayed.surface, seen, displayed.normals)
     report.normals = prepared.normals.metadata()
     more = {"normals": report.normals} | ({} if budget is None else {"budget": budget})
     finish(prepared, levels, content, options, report, more)
@@ -257,6 +260,10 @@ def make_levels(surface: Surface, options: BakeOptions, report: BakeReport, tell
         with report.timed("simplify"):
             finest = _finest(surface, options)
         sizes = inside.sizes_of(finest, options.interior, options.for_materials, options.mesher)
+        with report.timed("surface"):
+            cut = surface_changes.refined(finest, options.for_materials, options.mesher)
+        finest = cut.surface
+        report.notes += [cut.note] if cut.note else []
         # The finest level takes longest: its tets are made while the chain below it is.
         jobs = [submit(_make_level, finest, options, sizes, 0)]
         with report.timed("simplify"):
@@ -271,6 +278,15 @@ def _finest(surface: Surface, options: BakeOptions) -> Surface:
     """The finest simulation surface."""
     finest = subdivide.subdivide(surface, options.refine)
     return lod.simplify(finest, options.surface_vertices) if options.surface_vertices else finest
+
+
+def shown(prepared: Prepared, options: BakeOptions) -> Prepared:
+    """With the displayed triangles cut as those of the simulation are, of which each shows one; they stay flat."""
+    surface = prepared.surface.rounded()
+    cut = surface_changes.refined(surface, options.for_materials, options.mesher)
+    if not cut.cuts:
+        return prepared
+    return replace(prepared, surface=cut.straight(surface), normals=prepared.normals.cut(surface, cut.cuts))
 
 
 @contextmanager

@@ -187,9 +187,10 @@ def _add_size_options(parser: argparse.ArgumentParser) -> None:
         "--for-material",
         action="append",
         metavar="M",
-        help="size the tets inside for the light in this material instead, and for how it changes from place to place; "
-        "several allowed: coefficients, like sigma_s_prime=2.0,sigma_a=0.01/0.02/0.05, or any text or .npz as in "
-        "`render`",
+        help="size the tets inside for the light in this material instead, and for how it changes from place to "
+        "place; triangles in which it changes are cut, on the simulation surface curved as by --refine, on the "
+        "displayed one straight, down to edges of half a mean free path; several allowed: coefficients, like "
+        "sigma_s_prime=2.0,sigma_a=0.01/0.02/0.05, or any text or .npz as in `render`",
     )
 
 

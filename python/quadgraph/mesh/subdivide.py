@@ -6,6 +6,8 @@ has it (curved PN triangles, Vlachos et al. 2001), so that a ball becomes rounde
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from quadgraph.base.errors import InputError
@@ -44,19 +46,38 @@ def subdivide(surface: Surface, steps: int) -> Surface:
 
 
 def _step(surface: Surface, sharp: np.ndarray) -> tuple[Surface, np.ndarray]:
+    count = len(surface.triangles)
+    triangles = _four(surface.triangles, len(surface.vertices) + surface.topology.face_edges)
+    return curved(surface, sharp, np.ones(len(sharp), bool), triangles, np.tile(np.arange(count), 4))
+
+
+def curved(
+    surface: Surface,
+    sharp: np.ndarray,
+    marked: np.ndarray,
+    triangles: np.ndarray,
+    parent: np.ndarray,
+    crossing_in: Callable[[Surface], np.ndarray] = intersecting_triangles,
+) -> tuple[Surface, np.ndarray]:
+    """A closed 2-manifold (mm) with the middles of `marked` edges (e,) as further vertices, curved, and sharp edges.
+
+    sharp: (e,) of the surface; triangles (k, 3): with these vertices behind the old ones, in the order of their edges;
+    parent: (k,) the triangle that each is of; crossing_in: finds triangles that cross, whose edges are left straight.
+    Raises ToolError without TetGen.
+    """
     edges, face_edges = surface.topology.edges, surface.topology.face_edges
     ends = surface.vertices[edges]
     offsets = np.where(sharp[:, None], _along_creases(surface, sharp), _over_smooth(surface, sharp))
     length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
     far = np.linalg.norm(offsets, axis=1)
-    offsets *= np.minimum(1, _LONGEST * length / np.maximum(far, _NEARLY_NOTHING))[:, None]
-    triangles = _four(surface.triangles, len(surface.vertices) + face_edges)
+    offsets *= (marked * np.minimum(1, _LONGEST * length / np.maximum(far, _NEARLY_NOTHING)))[:, None]
     while True:
-        finer = Surface(np.concatenate([surface.vertices, ends.mean(axis=1) + offsets]), triangles).rounded()
-        crossing = intersecting_triangles(finer) if offsets.any() else np.empty(0, np.int64)
-        around = np.unique(face_edges[crossing % len(face_edges)])
+        middles = (ends.mean(axis=1) + offsets)[marked]
+        finer = Surface(np.concatenate([surface.vertices, middles]), triangles).rounded()
+        crossing = crossing_in(finer) if offsets.any() else np.empty(0, np.int64)
+        around = np.unique(face_edges[parent[crossing]])
         if not len(around) or not offsets[around].any():
-            return finer, _inherited(finer, edges, sharp, len(surface.vertices))
+            return finer, _inherited(finer, edges, sharp, marked)
         offsets[around] = 0
 
 
@@ -66,12 +87,14 @@ def _four(triangles: np.ndarray, middles: np.ndarray) -> np.ndarray:
     return np.concatenate([np.column_stack(t) for t in ((a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca))])
 
 
-def _inherited(finer: Surface, edges: np.ndarray, sharp: np.ndarray, vertices: int) -> np.ndarray:
-    """(e,) which edges of the finer surface are halves of sharp ones."""
-    middle = vertices + np.flatnonzero(sharp)
-    halves = np.concatenate([np.column_stack([edges[sharp][:, k], middle]) for k in (0, 1)])
+def _inherited(finer: Surface, edges: np.ndarray, sharp: np.ndarray, marked: np.ndarray) -> np.ndarray:
+    """(e,) which edges of the finer surface are sharp ones, or halves of them."""
     count = len(finer.vertices)
-    return np.isin(finer.topology.edges @ [count, 1], halves @ [count, 1])
+    middle = count - marked.sum() + np.cumsum(marked) - 1
+    both = sharp & marked
+    halves = [np.column_stack([edges[both][:, k], middle[both]]) for k in (0, 1)]
+    kept = np.concatenate([*halves, edges[sharp & ~marked]])
+    return np.isin(finer.topology.edges @ [count, 1], kept @ [count, 1])
 
 
 def _over_smooth(surface: Surface, sharp: np.ndarray) -> np.ndarray:

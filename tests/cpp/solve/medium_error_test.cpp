@@ -45,22 +45,23 @@ TEST_CASE("points drawn in tets lie in them, and are spread as their volume is")
   const QuadGraph graph = QuadGraph::parse(box_graph({4}, 6.0f), "box");
   const Level& level = graph.levels()[0];
   const std::vector<glm::vec3> points = points_in_tets(level);
-  REQUIRE(points.size() == level.tet_count());
+  REQUIRE(points.size() == points_of_a_tet * level.tet_count());
   double share[4] = {};  // mean barycentric coordinates
-  for (std::uint32_t t = 0; t < level.tet_count(); ++t) {
-    const glm::uvec4& tet = level.tets[t];
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    const glm::uvec4& tet = level.tets[i % level.tet_count()];
     const glm::dmat3 edges(glm::dvec3(level.vertices[tet[1]] - level.vertices[tet[0]]),
                            glm::dvec3(level.vertices[tet[2]] - level.vertices[tet[0]]),
                            glm::dvec3(level.vertices[tet[3]] - level.vertices[tet[0]]));
-    const glm::dvec3 w = glm::inverse(edges) * glm::dvec3(points[t] - level.vertices[tet[0]]);
+    const glm::dvec3 w = glm::inverse(edges) * glm::dvec3(points[i] - level.vertices[tet[0]]);
     const double all[4] = {1 - w.x - w.y - w.z, w.x, w.y, w.z};
     for (int k = 0; k < 4; ++k) {
       CHECK(all[k] > -1e-4);
-      share[k] += all[k] / level.tet_count();
+      share[k] += all[k] / static_cast<double>(points.size());
     }
   }
   // The standard deviation of a coordinate in a tet is sqrt(3 / 80).
-  for (const double each : share) CHECK(std::abs(each - 0.25) < 5 * std::sqrt(3.0 / 80 / level.tet_count()));
+  for (const double each : share)
+    CHECK(std::abs(each - 0.25) < 5 * std::sqrt(3.0 / 80 / static_cast<double>(points.size())));
 }
 
 TEST_CASE("the load is what the one operator's product with the fluence has more than the other's") {

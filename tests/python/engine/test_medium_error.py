@@ -55,7 +55,7 @@ def fill(engine: core.Engine, elsewhere: bool, *, drawn: bool = False) -> None:
         coefficients = checker(np.array(level.nodes))
         if drawn and number == 0:
             for values, others in zip(coefficients, there, strict=True):
-                values[: len(others)] = others
+                values[: len(level.tets)] = others[: len(level.tets)]
         engine.set_optical(number, *coefficients, ETA, there if elsewhere and number == 0 else None)
 
 

@@ -12,7 +12,8 @@ import quadgraph
 from baked import write_levels
 from quadgraph import cli
 from quadgraph.api.lights import AmbientLight, DirectionalLight
-from shapes import icosphere
+from quadgraph.baking.pipeline import BakeOptions, bake
+from shapes import icosphere, write_obj
 
 MATERIAL = "sigma_s_prime=1,sigma_a=0.02,eta=1.3"
 SUN = DirectionalLight((0.0, 0.0, -1.0), 1.0)
@@ -96,3 +97,45 @@ def test_commands_and_files_say_it(ball, tmp_path, capsys):
     assert 0 < error["whole"] < 0.1
     assert f"error of the picture: {100 * error['whole']:.2g}% whole" in capsys.readouterr().out
     assert b"picture error" in picture.read_bytes()
+
+
+def by_block(picture) -> np.ndarray:
+    """Radiance of red, means over blocks of 4 x 4 pixels, nothing where the body does not fill one."""
+
+    def mean(values: np.ndarray) -> np.ndarray:
+        return values.reshape(16, 4, 16, 4).mean(axis=(1, 3))
+
+    return np.where(mean(picture.alpha) > 0.999, mean(picture.scattered[..., 0]), 0)
+
+
+def test_steps_of_a_material_within_triangles_are_told_of_about_as_they_are(tmp_path):
+    mesh = write_obj(icosphere(3, 10), tmp_path / "ball.obj")
+    material = "sigma_s_prime=.6,sigma_a=.01,second_sigma_s_prime=.3,second_sigma_a=.3,pattern=checker,period=7,eta=1.2"
+    blocks, stated = [], []
+    for number, materials in enumerate(((), (material,))):
+        file = tmp_path / f"{number}.qgraph"
+        bake(mesh, file, BakeOptions(unit="mm", levels=2, visibility_rays=0, for_materials=materials))
+        with quadgraph.Engine(file) as engine:
+            engine.material, engine.lights = material, [AmbientLight(1.0)]
+            engine.solve(sweeps=1)
+            picture = shown(engine, 20.0, transmission_roughness=0)
+        blocks.append(by_block(picture))
+        stated.append(picture.error.whole)
+    inside = (blocks[0] > 0) & (blocks[1] > 0)
+    assert inside.sum() > 80
+    coarse, fine = (each[inside] for each in blocks)
+    true = np.linalg.norm(coarse - fine) / np.linalg.norm(fine)
+    assert true > 0.03
+    assert 1 / 2.5 < stated[0] / true < 2.5
+    assert stated[1] < 0.6 * stated[0]
+
+
+def test_a_pattern_of_two_alike_adds_nothing_and_one_of_two_others_much(engine):
+    pattern = "sigma_s_prime=1,sigma_a=.02,pattern=checker,period=5,eta=1.3,second_sigma_s_prime=1,second_sigma_a="
+    stated = []
+    for material in (MATERIAL, f"{pattern}.02", f"{pattern}.2"):
+        engine.material = material
+        engine.solve(**QUICK)
+        stated.append(shown(engine, LIT).error.whole)
+    assert stated[1] == pytest.approx(stated[0], rel=0.05)
+    assert stated[2] > 1.5 * stated[0]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -11,7 +11,8 @@ import numpy as np
 
 from quadgraph.base.errors import InputError
 from quadgraph.mesh import gltf_file
-from quadgraph.mesh.creases import unit
+from quadgraph.mesh.bisection import Cut
+from quadgraph.mesh.creases import corner_normals, creases, unit
 from quadgraph.mesh.looks import normal_texture
 from quadgraph.mesh.looks.carried import carried
 from quadgraph.mesh.looks.normal_texture import NormalTexture
@@ -53,6 +54,21 @@ class FoundNormals:
     def turned(self, turn: Callable[[np.ndarray], np.ndarray]) -> FoundNormals:
         """These, by a rotation of vectors (..., 3)."""
         return self if self.at_corners is None else replace(self, at_corners=turn(self.at_corners))
+
+    def cut(self, surface: Surface, cuts: Sequence[Cut]) -> FoundNormals:
+        """At the corners of triangles that `surface` was cut into, straight: these, or the computed ones of before.
+
+        Those that would be computed of what it was cut into are its triangles' own.
+        """
+        at_corners, texture = corner_normals(surface, creases(surface)), self.texture
+        if self.at_corners is not None:
+            at_corners = np.where(self.at_corners.any(axis=2, keepdims=True), self.at_corners, at_corners)
+        for each in cuts:
+            at_corners = unit(each.carried(at_corners))
+            if texture is not None:
+                places = each.carried(texture.places)
+                texture = replace(texture, places=np.where(places[:, :, 2:] == 1, places, 0))
+        return replace(self, at_corners=at_corners, texture=texture)
 
     def metadata(self) -> dict[str, Any]:
         """What a .qgraph keeps of it as `normals`."""
