@@ -23,9 +23,17 @@ void choose_body(State& state, std::optional<std::uint32_t> number) {
   state.say(one ? "Body: " + state.body : "All bodies");
 }
 
-void take_bodies(State& state, const std::vector<std::string>& bodies) {
+void take_bodies(State& state, const std::vector<std::string>& bodies, const std::vector<std::uint32_t>& outermost) {
   state.bodies = bodies;
+  state.outermost = outermost;
   if (std::ranges::find(bodies, state.body) == bodies.end()) state.body.clear();
+}
+
+std::string moves_with(const State& state) {
+  const auto found = std::ranges::find(state.bodies, state.body);
+  if (found == state.bodies.end()) return {};
+  const std::string& around = state.bodies[state.outermost[static_cast<std::size_t>(found - state.bodies.begin())]];
+  return around == state.body ? std::string() : around;
 }
 
 }  // namespace quadgraph

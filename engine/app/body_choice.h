@@ -19,7 +19,10 @@ void choose_material(State& state, const std::string& text);
 // What a click on a body of that number does, or one beside all: of several bodies the one is chosen, or all, and said.
 void choose_body(State& state, std::optional<std::uint32_t> number);
 
-// The bodies of the file that is shown now.
-void take_bodies(State& state, const std::vector<std::string>& bodies);
+// The bodies of the file that is shown now; outermost: the number of the one around each, as of QuadGraph.
+void take_bodies(State& state, const std::vector<std::string>& bodies, const std::vector<std::uint32_t>& outermost);
+
+// The outermost body around the chosen one, with which it moves; empty where it moves by itself.
+std::string moves_with(const State& state);
 
 }  // namespace quadgraph

@@ -48,7 +48,7 @@ void Viewer::take_up_body() {
   state_.front = graph.front();
   const RestBox box = rest_box(graph.display().vertices);
   state_.reach = static_cast<float>(glm::length(box.high - box.low));
-  take_bodies(state_, graph.bodies());
+  take_bodies(state_, graph.bodies(), graph.outermost());
   state_.methods = graph.levels().empty() ? std::vector<Method>{} : methods_of(graph.levels()[0]);
 }
 

@@ -133,9 +133,9 @@ void draw_frame(const Measured& measured) {
     tell("Solver", std::string(name_of(report.model)) + ", " + std::string(name_of(report.solver)));
   }
   if (report.path) tell("Solve", formatted("%u voxels, %u rounds", report.path->solid, report.path->rounds));
-  for (const std::string& text :
-       {report.budget, report.replaced, report.missed, report.stopped, report.advice, report.mesh_warning,
-        report.model_warning, report.size_warning, report.phase_warning, report.light_warning, report.deformed}) {
+  for (const std::string& text : {report.budget, report.replaced, report.missed, report.stopped, report.advice,
+                                  report.mesh_warning, report.model_warning, report.size_warning, report.phase_warning,
+                                  report.index_warning, report.light_warning, report.deformed}) {
     if (!text.empty()) ImGui::TextWrapped("%s", text.c_str());
   }
 }

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "engine/app/body_choice.h"
 #include "engine/app/panel_widgets.h"
 
 namespace quadgraph {
@@ -32,6 +33,10 @@ void draw_deformer(Scene& scene, const char* label, DeformerKind kind) {
 // Where the body that is chosen has been put.
 void draw_placement(State& state) {
   if (state.body.empty()) return;
+  if (const std::string around = moves_with(state); !around.empty()) {
+    ImGui::TextDisabled("%s moves with %s, within which it lies", state.body.c_str(), around.c_str());
+    return;
+  }
   const auto found = state.scene.placements.find(state.body);
   BodyPose pose = found == state.scene.placements.end() ? BodyPose() : found->second;
   glm::vec3 position(pose.position), rotation(pose.rotation);

@@ -57,6 +57,17 @@ Json as_json(const Convergence& found) {
   return json;
 }
 
+Json as_json(const PathReport& path) {
+  return {{"cost", name_of(path.options.cost)},
+          {"solver", name_of(path.options.solver)},
+          {"cells", path.options.cells},
+          {"size", {path.size.x, path.size.y, path.size.z}},
+          {"cell_mm", path.cell},
+          {"solid", path.solid},
+          {"lit", path.lit},
+          {"rounds", path.rounds}};
+}
+
 Json as_json(const SolveReport& report) {
   Json json;
   json["method"] = name_of(report.method);
@@ -82,17 +93,7 @@ Json as_json(const SolveReport& report) {
   json["bounces_W"] = Json::array();
   for (const glm::dvec3& bounce : report.bounces) json["bounces_W"].push_back(as_json(bounce));
   json["clipped"] = as_json(report.clipped);
-  if (report.path) {
-    const PathReport& path = *report.path;
-    json["path"] = {{"cost", name_of(path.options.cost)},
-                    {"solver", name_of(path.options.solver)},
-                    {"cells", path.options.cells},
-                    {"size", {path.size.x, path.size.y, path.size.z}},
-                    {"cell_mm", path.cell},
-                    {"solid", path.solid},
-                    {"lit", path.lit},
-                    {"rounds", path.rounds}};
-  }
+  if (report.path) json["path"] = as_json(*report.path);
   json["correction"] = report.correction ? as_json(*report.correction) : Json(nullptr);
   json["carried"] = report.carried ? Json(*report.carried) : Json(nullptr);
   json["certificate"] = report.certificate ? as_json(*report.certificate) : Json(nullptr);
@@ -114,6 +115,7 @@ Json as_json(const SolveReport& report) {
   json["model_warning"] = report.model_warning;
   json["size_warning"] = report.size_warning;
   json["phase_warning"] = report.phase_warning;
+  json["index_warning"] = report.index_warning;
   json["light_warning"] = report.light_warning;
   json["deformed"] = report.deformed;
   return json;
@@ -251,9 +253,9 @@ std::string text_report(const RunReport& report) {
   if (!report.solve.replaced.empty()) out << "solver   " << report.solve.replaced << "\n";
   if (!report.solve.budget.empty()) out << "budget   " << report.solve.budget << "\n";
   if (!report.solve.stopped.empty()) out << "failed   " << report.solve.stopped << "\n";
-  for (const std::string& warning :
-       {report.solve.missed, report.solve.advice, report.solve.mesh_warning, report.solve.model_warning,
-        report.solve.size_warning, report.solve.phase_warning, report.solve.light_warning, report.solve.deformed}) {
+  for (const std::string& warning : {report.solve.missed, report.solve.advice, report.solve.mesh_warning,
+                                     report.solve.model_warning, report.solve.size_warning, report.solve.phase_warning,
+                                     report.solve.index_warning, report.solve.light_warning, report.solve.deformed}) {
     if (!warning.empty()) out << "warning  " << warning << "\n";
   }
   out << "memory   " << decimals(static_cast<double>(report.engine.peak_device_bytes()) / mebibyte, 0)

@@ -49,12 +49,13 @@ struct Uncut {
 
 struct State {
   Scene scene;
-  std::vector<Method> methods;      // that the file's levels serve
-  std::vector<std::string> bodies;  // in the file, by name; empty: one without a name
-  std::string body;                 // of these, whose material the panel and the keys change; empty: all
-  float reach = 0;                  // mm, that the panel moves a body by at most: twice the radius of all at rest
-  float front = 0;                  // of the body, degrees
-  std::size_t light = 0;            // the selected one
+  std::vector<Method> methods;           // that the file's levels serve
+  std::vector<std::string> bodies;       // in the file, by name; empty: one without a name
+  std::vector<std::uint32_t> outermost;  // of these the number of the one around each; its own where there is none
+  std::string body;                      // of these, whose material the panel and the keys change; empty: all
+  float reach = 0;                       // mm, that the panel moves a body by at most: twice the radius of all at rest
+  float front = 0;                       // of the body, degrees
+  std::size_t light = 0;                 // the selected one
   Brush brush;
   std::size_t layer = 0;     // the active one, which is painted
   std::string layer_text;    // its name,

@@ -81,7 +81,12 @@ VertexBodies vertex_bodies(const QuadGraph& graph) {
 
 std::vector<RigidMove> rigid_moves(const QuadGraph& graph, const VertexBodies& bodies, const BodyPoses& poses) {
   for (const auto& [name, pose] : poses) {
-    body_number(name, graph.bodies());  // or it says that there is none
+    const std::uint32_t body = body_number(name, graph.bodies());
+    if (const std::uint32_t outer = graph.outermost()[body]; outer != body && pose != BodyPose()) {
+      throw InputError("placements: " + name + " found, which lies within " + graph.bodies()[outer] +
+                       " and shares its surface with it: place " + graph.bodies()[outer] + ", which takes " + name +
+                       " along, or bake it where it is to lie");
+    }
     try {
       check_pose(pose);
     } catch (const InputError& error) {
@@ -95,8 +100,9 @@ std::vector<RigidMove> rigid_moves(const QuadGraph& graph, const VertexBodies& b
     const std::uint32_t body = body_number(name, graph.bodies());
     const glm::dvec3& degrees = pose.rotation;
     const glm::dmat3 turn = turn_about(2, degrees.z) * turn_about(1, degrees.y) * turn_about(0, degrees.x);
-    moves[body] = {turn, middles[body] - turn * middles[body] + pose.position};
+    if (pose != BodyPose()) moves[body] = {turn, middles[body] - turn * middles[body] + pose.position};
   }
+  for (std::size_t body = 0; body < moves.size(); ++body) moves[body] = moves[graph.outermost()[body]];
   return moves;
 }
 

@@ -36,8 +36,8 @@ struct VertexBodies {
 };
 VertexBodies vertex_bodies(const QuadGraph& graph);
 
-// The motion of every body of the file. Throws InputError for poses as check_pose, and for a body that the file does
-// not have.
+// The motion of every body of the file; those within another move with the outermost. Throws InputError for poses as
+// check_pose, for a body that the file does not have, and for one within another that is to move by itself.
 std::vector<RigidMove> rigid_moves(const QuadGraph& graph, const VertexBodies& bodies, const BodyPoses& poses);
 
 // The step that makes these motions, which is the first of a list.

@@ -38,4 +38,37 @@ std::vector<std::string> body_names(const std::string& metadata, const std::stri
   return names;
 }
 
+std::vector<std::uint32_t> body_hosts(const std::string& metadata, const std::vector<std::string>& names,
+                                      const std::string& file) {
+  std::vector<std::uint32_t> hosts;
+  if (names.empty()) return hosts;
+  const auto json = parse_json(metadata);
+  for (const auto& body : json["bodies"]) {
+    const auto number = static_cast<std::uint32_t>(hosts.size());
+    hosts.push_back(number);
+    if (!body.contains("within")) continue;
+    const auto& within = body["within"];
+    const auto found = within.is_string() ? std::ranges::find(names, within.get<std::string>()) : names.end();
+    if (found == names.end() || *found == names[number]) {
+      fail_format(file, "metadata",
+                  "'bodies', row " + std::to_string(number) + ": 'within' must be the name of another body");
+    }
+    hosts[number] = static_cast<std::uint32_t>(found - names.begin());
+  }
+  const std::vector<std::uint32_t> outermost = outermost_bodies(hosts);
+  for (std::size_t body = 0; body < hosts.size(); ++body) {
+    if (hosts[outermost[body]] == outermost[body]) continue;
+    fail_format(file, "metadata", "'bodies', row " + std::to_string(body) + ": 'within' leads in a circle");
+  }
+  return hosts;
+}
+
+std::vector<std::uint32_t> outermost_bodies(const std::vector<std::uint32_t>& hosts) {
+  std::vector<std::uint32_t> outermost = hosts;
+  for (std::uint32_t& body : outermost) {
+    for (std::size_t steps = 0; steps < hosts.size() && hosts[body] != body; ++steps) body = hosts[body];
+  }
+  return outermost;
+}
+
 }  // namespace quadgraph

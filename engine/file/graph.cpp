@@ -202,6 +202,8 @@ void QuadGraph::read(std::span<const std::byte> bytes, const std::string& name) 
   check_metadata(table, metadata_, count);
   front_ = front_from(metadata_, name);
   bodies_ = body_names(metadata_, name);
+  hosts_ = body_hosts(metadata_, bodies_, name);
+  outermost_ = outermost_bodies(hosts_);
   for (std::uint32_t i = 0; i < count; ++i) levels_.push_back(read_level(table, i, i + 1 == count));
   display_ = read_display(table, count > 0);
   validate(name);
@@ -222,7 +224,7 @@ void QuadGraph::validate(const std::string& name) {
     validate_grid(levels_[i], name, i);
   }
   validate_grid_everywhere(levels_, name);
-  validate_bodies_apart(levels_, display_, name);
+  validate_bodies_apart(levels_, display_, hosts_, name);
   validate_seen_once(levels_, name);
   places.get();
 }

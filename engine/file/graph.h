@@ -94,6 +94,10 @@ class QuadGraph {
   const DisplayMesh& display() const { return display_; }
   // Names of the bodies that Level::tet_bodies counts; empty: one body without a name.
   const std::vector<std::string>& bodies() const { return bodies_; }
+  // Of each body the one that it lies within and shares its surface with; its own number where it lies in none.
+  const std::vector<std::uint32_t>& hosts() const { return hosts_; }
+  // Of each body the outermost around it, whose surface is that of them all; its own number where it lies in none.
+  const std::vector<std::uint32_t>& outermost() const { return outermost_; }
   const std::string& metadata() const { return metadata_; }  // JSON text, checked to be an object
   float front() const { return front_; }  // degrees about y from where it is shown when nobody says so
   std::size_t byte_size() const { return byte_size_; }
@@ -114,6 +118,7 @@ class QuadGraph {
   DisplayMesh display_;
   std::string metadata_;
   std::vector<std::string> bodies_;
+  std::vector<std::uint32_t> hosts_, outermost_;
   float front_ = 0;
 };
 

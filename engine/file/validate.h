@@ -34,8 +34,10 @@ void validate_seen_once(std::span<const Level> levels, const std::string& file);
 // tet on every level. Indices of levels and display mesh are valid.
 void validate_bodies(std::span<const Level> levels, std::size_t bodies, const std::string& file);
 
-// No link, transfer or triangle of the display mesh joins two bodies, of levels that keep all other rules.
-void validate_bodies_apart(std::span<const Level> levels, const DisplayMesh& display, const std::string& file);
+// No link, transfer or triangle of the display mesh joins two bodies, of levels that keep all other rules, but where
+// one lies within the other: `hosts`, as body_hosts has them, say so. Such have no part of the surface.
+void validate_bodies_apart(std::span<const Level> levels, const DisplayMesh& display,
+                           const std::vector<std::uint32_t>& hosts, const std::string& file);
 
 // The box around them is neither too small nor too large for single precision.
 void validate_size(std::span<const glm::vec3> vertices, const std::string& file, const std::string& section);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "engine/file/body_names.h"
 #include "engine/file/section_table.h"
 #include "engine/file/validate.h"
 
@@ -38,26 +39,43 @@ void check_level(const Level& level, std::size_t bodies, const std::string& file
   }
 }
 
-// The body of each vertex, which no two bodies share where links do not join them.
-std::vector<std::uint8_t> bodies_of_vertices(const Level& level, const std::string& file, std::size_t index) {
-  std::vector<std::uint8_t> body(level.vertices.size(), 0);
+// Which bodies lie within which.
+struct Nesting {
+  const std::vector<std::uint32_t>& hosts;  // as body_hosts
+  std::vector<std::uint32_t> outermost;
+
+  std::uint32_t around(std::uint32_t body) const { return outermost[body]; }
+  bool touch(std::uint32_t a, std::uint32_t b) const { return hosts[a] == b || hosts[b] == a; }
+};
+
+// The outermost body around each vertex, which no two such share where links do not join them.
+std::vector<std::uint32_t> bodies_of_vertices(const Level& level, const Nesting& nesting, const std::string& file,
+                                              std::size_t index) {
+  std::vector<std::uint32_t> body(level.vertices.size(), 0);
   for (std::size_t t = 0; t < level.tets.size(); ++t) {
-    for (int k = 0; k < 4; ++k) body[level.tets[t][k]] = level.tet_bodies[t];
+    for (int k = 0; k < 4; ++k) body[level.tets[t][k]] = nesting.around(level.tet_bodies[t]);
   }
   for (std::size_t t = 0; t < level.tets.size(); ++t) {
+    const std::uint32_t own = level.tet_bodies[t];
     for (int k = 0; k < 4; ++k) {
-      if (body[level.tets[t][k]] == level.tet_bodies[t]) continue;
-      fail_format(file, of_level(index, "tets"), "row " + std::to_string(t) + ": shares a vertex with another body");
+      const std::string row = "row " + std::to_string(t) + ": ";
+      if (body[level.tets[t][k]] != nesting.around(own)) {
+        fail_format(file, of_level(index, "tets"), row + "shares a vertex with another body");
+      }
+      if (level.tets[t][k] < level.surface_vertex_count && own != nesting.around(own)) {
+        fail_format(file, of_level(index, "tets"), row + "of a body within another, has a vertex on the surface");
+      }
     }
   }
   return body;
 }
 
-void check_links(const Level& level, const std::string& file, std::size_t index) {
+void check_links(const Level& level, const Nesting& nesting, const std::string& file, std::size_t index) {
   for (std::size_t t = 0; t < level.tets.size(); ++t) {
     for (int k = 0; k < 4; ++k) {
       const std::uint32_t other = level.links[t][k];
       if (other >= level.tets.size() || level.tet_bodies[other] == level.tet_bodies[t]) continue;
+      if (nesting.touch(level.tet_bodies[other], level.tet_bodies[t])) continue;
       fail_format(file, of_level(index, "links"), "row " + std::to_string(t) + ": a link joins two bodies");
     }
   }
@@ -74,8 +92,8 @@ void check_transfer(const Transfer& transfer, const Own& own, const Other& other
   }
 }
 
-auto by_tet(const Level& level) {
-  return [&level](std::size_t t) { return level.body_of_tet(static_cast<std::uint32_t>(t)); };
+auto by_tet(const Level& level, const Nesting& nesting) {
+  return [&](std::size_t t) { return nesting.around(level.body_of_tet(static_cast<std::uint32_t>(t))); };
 }
 
 auto by_face(const Level& level) {
@@ -89,16 +107,18 @@ void validate_bodies(std::span<const Level> levels, std::size_t bodies, const st
   for (std::size_t i = 0; i < levels.size(); ++i) check_level(levels[i], bodies, file, i);
 }
 
-void validate_bodies_apart(std::span<const Level> levels, const DisplayMesh& display, const std::string& file) {
+void validate_bodies_apart(std::span<const Level> levels, const DisplayMesh& display,
+                           const std::vector<std::uint32_t>& hosts, const std::string& file) {
   if (levels.empty() || levels[0].tet_bodies.empty()) return;
-  std::vector<std::vector<std::uint8_t>> vertices;
+  const Nesting nesting{hosts, outermost_bodies(hosts)};
+  std::vector<std::vector<std::uint32_t>> vertices;
   for (std::size_t i = 0; i < levels.size(); ++i) {
-    check_links(levels[i], file, i);
-    vertices.push_back(bodies_of_vertices(levels[i], file, i));
+    check_links(levels[i], nesting, file, i);
+    vertices.push_back(bodies_of_vertices(levels[i], nesting, file, i));
   }
   for (std::size_t i = 0; i + 1 < levels.size(); ++i) {
     const Level &fine = levels[i], &coarse = levels[i + 1];
-    check_transfer(fine.inner, by_tet(fine), by_tet(coarse), file, of_level(i, "inner_index"));
+    check_transfer(fine.inner, by_tet(fine, nesting), by_tet(coarse, nesting), file, of_level(i, "inner_index"));
     check_transfer(fine.surface, by_face(fine), by_face(coarse), file, of_level(i, "surface_index"));
     const auto fine_vertex = [&](std::size_t v) { return vertices[i][v]; };
     const auto coarse_vertex = [&](std::size_t v) { return vertices[i + 1][v]; };

@@ -145,6 +145,7 @@ struct SolveReport {
   std::string mesh_warning, model_warning;
   std::string size_warning;                    // of a material on a body of that size (engine/optics/body_size.h)
   std::string phase_warning;                   // of a material that scatters forwards (engine/optics/material.h)
+  std::string index_warning;                   // of bodies within others (engine/render/body_material.h)
   std::string light_warning;                   // of lights that stand in the body; empty if none does
   std::string deformed;                        // tets of level 0 that a deformation has spoilt; empty if none is
   std::vector<glm::dvec3> bounces;             // W per channel that each bounce brought in

@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <queue>
+#include <span>
 #include <tuple>
 
 namespace quadgraph {
@@ -34,17 +35,15 @@ Neighbours neighbours_of(const Level& level) {
   return result;
 }
 
-std::vector<std::uint32_t> nearest_open(const Level& level) {
+// Of each vertex the nearest of `sources`, by spreading over the edges of the tets; itself where none is reached.
+std::vector<std::uint32_t> nearest_of(const Level& level, std::span<const std::uint32_t> sources) {
   std::vector<std::uint32_t> nearest(level.vertices.size(), none);
   // Distance, vertex, surface vertex: equal distances are settled by number, so that the answer is one.
   using Offer = std::tuple<double, std::uint32_t, std::uint32_t>;
   std::priority_queue<Offer, std::vector<Offer>, std::greater<>> offers;
   constexpr Offer nothing{std::numeric_limits<double>::infinity(), none, none};
   std::vector<Offer> best(level.vertices.size(), nothing);
-  for (std::uint32_t f = 0; f < level.face_count(); ++f) {
-    if (level.reflecting(f)) continue;
-    for (int k = 0; k < 3; ++k) offers.emplace(0.0, level.faces[f][k], level.faces[f][k]);
-  }
+  for (const std::uint32_t source : sources) offers.emplace(0.0, source, source);
   const Neighbours around = neighbours_of(level);
   while (!offers.empty()) {
     const auto [distance, v, s] = offers.top();
@@ -64,6 +63,16 @@ std::vector<std::uint32_t> nearest_open(const Level& level) {
     if (nearest[v] == none) nearest[v] = v;
   }
   return nearest;
+}
+
+// Corners of the open faces, with repetitions.
+std::vector<std::uint32_t> open_vertices(const Level& level) {
+  std::vector<std::uint32_t> found;
+  for (std::uint32_t f = 0; f < level.face_count(); ++f) {
+    if (level.reflecting(f)) continue;
+    for (int k = 0; k < 3; ++k) found.push_back(level.faces[f][k]);
+  }
+  return found;
 }
 
 // Sine of the angle by which `direction` lies inside the cone of the tet at its corner k; negative outside.
@@ -100,8 +109,23 @@ std::vector<glm::dvec3> open_normals(const Level& level) {
   return normal;
 }
 
+std::vector<std::uint32_t> nearest_boundary(const Level& level) {
+  std::vector<std::uint32_t> sources;
+  for (std::uint32_t t = 0; t < level.tet_count(); ++t) {
+    for (int k = 0; k < 4; ++k) {
+      const std::uint32_t other = level.links[t][k];
+      if (other >= level.tet_count() || level.body_of_tet(other) == level.body_of_tet(t)) continue;
+      for (int j = 1; j < 4; ++j) sources.push_back(level.tets[t][(k + j) % 4]);
+    }
+  }
+  if (sources.empty()) return {};
+  const std::vector<std::uint32_t> open = open_vertices(level);
+  sources.insert(sources.end(), open.begin(), open.end());
+  return nearest_of(level, sources);
+}
+
 VertexStarts vertex_starts(const Level& level) {
-  VertexStarts result{nearest_open(level), std::vector<std::uint32_t>(level.vertices.size(), 0)};
+  VertexStarts result{nearest_of(level, open_vertices(level)), std::vector<std::uint32_t>(level.vertices.size(), 0)};
   const std::vector<glm::dvec3> normal = open_normals(level);
   std::vector<double> best(level.vertices.size(), -std::numeric_limits<double>::infinity());
   for (std::uint32_t t = 0; t < level.tet_count(); ++t) {

@@ -22,6 +22,9 @@ struct VertexStarts {
 
 VertexStarts vertex_starts(const Level& level);
 
+// As VertexStarts::nearest, of the open faces and of those that two bodies share; empty where no two share any.
+std::vector<std::uint32_t> nearest_boundary(const Level& level);
+
 // Unit outward normals, the area-weighted means of the open faces around; 0 at vertices without.
 std::vector<glm::dvec3> open_normals(const Level& level);
 

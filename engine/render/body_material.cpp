@@ -38,6 +38,17 @@ std::vector<gpu::Optical> at_nodes(const Level& level, std::span<const BodyMater
   return coefficients(level, level.nodes, body_of, materials);
 }
 
+// Bodies within others have no surface to the air: as smooth and of the index as the outermost around them.
+std::vector<BodyMaterial> at_surfaces(std::span<const BodyMaterial> materials,
+                                      const std::vector<std::uint32_t>& outermost) {
+  std::vector<BodyMaterial> found(materials.begin(), materials.end());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    found[i].eta = materials[outermost[i]].eta;
+    found[i].roughness = materials[outermost[i]].roughness;
+  }
+  return found;
+}
+
 void check_materials(std::span<const BodyMaterial> materials, std::span<const std::string> bodies) {
   if (bodies.empty()) throw InputError("materials: found for a file of one body without a name; set its material");
   if (materials.size() != bodies.size()) {
@@ -54,6 +65,19 @@ void check_materials(std::span<const BodyMaterial> materials, std::span<const st
 }
 
 }  // namespace
+
+std::string index_warning(std::span<const BodyMaterial> materials, std::span<const std::string> bodies,
+                          const std::vector<std::uint32_t>& outermost) {
+  std::string text;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const float own = materials[i].eta, around = materials[outermost[i]].eta;
+    if (own == around) continue;
+    text += (text.empty() ? "" : "; ") + bodies[i] + " has the index of refraction " + number_text(around) + " of " +
+            bodies[outermost[i]] + ", which it lies within, and not its own of " + number_text(own);
+  }
+  if (!text.empty()) text += ": what the surface between them would mirror and bend is left out";
+  return text;
+}
 
 BodyMaterial body_material(const std::string& text) {
   const gpu::Material material = parse_material(text);
@@ -80,11 +104,12 @@ std::string text_of(std::span<const BodyMaterial> materials, std::span<const std
   return text;
 }
 
-void Engine::set_materials(std::span<const BodyMaterial> materials) {
+void Engine::set_materials(std::span<const BodyMaterial> given) {
   const auto turn = implementation_->in_use.take();
   auto& self = *implementation_;
   const std::vector<std::string>& bodies = self.graph.bodies();
-  check_materials(materials, bodies);
+  check_materials(given, bodies);
+  const std::vector<BodyMaterial> materials = at_surfaces(given, self.graph.outermost());
   Simulation& simulation = self.levels();
   const std::vector<Level>& levels = self.graph.levels();
   const std::vector<gpu::Optical> elsewhere = coefficients(
@@ -104,6 +129,7 @@ void Engine::set_materials(std::span<const BodyMaterial> materials) {
   self.certainty = {};
   self.eta = std::move(eta);
   self.body_roughness.emplace(self.device, self.graph, materials);
+  self.index_warning = index_warning(given, bodies, self.graph.outermost());
   self.stale();
 }
 

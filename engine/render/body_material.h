@@ -27,4 +27,9 @@ BodyMaterial body_material(const std::string& text);
 // "cup: porcelain; stone: jade".
 std::string text_of(std::span<const BodyMaterial> materials, std::span<const std::string> bodies);
 
+// Which bodies have not the index of refraction that their material says, as they lie within another; empty if none.
+// outermost: as of QuadGraph.
+std::string index_warning(std::span<const BodyMaterial> materials, std::span<const std::string> bodies,
+                          const std::vector<std::uint32_t>& outermost);
+
 }  // namespace quadgraph

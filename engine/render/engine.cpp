@@ -199,6 +199,7 @@ SolveReport Engine::solve(const SolveOptions& options, const std::function<void(
     self.interruptible([&] { self.simulation->certify(options, *self.report, check); });
   }
   const bool of_one_text = !by_path && !self.body_roughness;
+  if (self.body_roughness) self.report->index_warning = self.index_warning;
   if (of_one_text) self.report->size_warning = size_warning(self.material, self.of_text, self.simulation->chord());
   self.add_overlaps(*self.report);
   judge(*self.report, self.lights, self.lights_inside());

@@ -66,6 +66,7 @@ struct Engine::Implementation {
   gpu::Material of_text{};                      // what `material` says, where it is the text of one
   Certainty certainty;                          // of it, at the vertices of level 0
   std::optional<BodyRoughness> body_roughness;  // of the materials of several bodies
+  std::string index_warning;                    // the same, of the report
   std::vector<Light> lights;
   std::vector<float> eta{1};      // of the material, or of those of all bodies
   bool shadows_stale = false;     // they are not those of the present lights and shape

@@ -34,7 +34,7 @@ std::vector<PlacedBody> bodies_where_they_are(const QuadGraph& graph, const Defo
 
 // Whether some of these places lie in a body, which has been moved by `move`.
 bool reaches_into(const PlacedBody& one, const PlacedBody& other, std::uint32_t number, const RigidMove& move,
-                  const Level& level, const TetLocator& locator) {
+                  const QuadGraph& graph, const TetLocator& locator) {
   const std::size_t step = std::max<std::size_t>(one.vertices.size() / most_vertices, 1);
   const glm::dmat3 back = glm::transpose(move.turn);
   for (std::size_t v = 0; v < one.vertices.size(); v += step) {
@@ -43,7 +43,7 @@ bool reaches_into(const PlacedBody& one, const PlacedBody& other, std::uint32_t 
         glm::all(glm::greaterThanEqual(p, other.box.low)) && glm::all(glm::lessThanEqual(p, other.box.high));
     if (!near) continue;
     const auto place = locator.find(back * (p - move.shift));
-    if (place && level.body_of_tet(place->tet) == number) return true;
+    if (place && graph.outermost()[graph.levels()[0].body_of_tet(place->tet)] == number) return true;
   }
   return false;
 }
@@ -51,14 +51,13 @@ bool reaches_into(const PlacedBody& one, const PlacedBody& other, std::uint32_t 
 }  // namespace
 
 std::string overlap_text(const QuadGraph& graph, const Deformer& placed, const TetLocator& locator) {
-  const Level& level = graph.levels()[0];
   const std::vector<PlacedBody> bodies = bodies_where_they_are(graph, placed);
   std::string text;
   for (std::uint32_t a = 0; a < bodies.size(); ++a) {
     for (std::uint32_t b = a + 1; b < bodies.size(); ++b) {
       if (placed.moves[a] == placed.moves[b]) continue;  // as they lay in the file
-      if (!reaches_into(bodies[a], bodies[b], b, placed.moves[b], level, locator) &&
-          !reaches_into(bodies[b], bodies[a], a, placed.moves[a], level, locator)) {
+      if (!reaches_into(bodies[a], bodies[b], b, placed.moves[b], graph, locator) &&
+          !reaches_into(bodies[b], bodies[a], a, placed.moves[a], graph, locator)) {
         continue;
       }
       text += (text.empty() ? "" : "; ") + graph.bodies()[a] + " and " + graph.bodies()[b] + " overlap";

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/reference/vertex_starts.h"
 #include "engine/solve/row_structure.h"
 #include "interface/transport/transport_books.comp.h"
 #include "interface/transport/transport_carry.comp.h"
@@ -56,6 +57,8 @@ TransportSamples::TransportSamples(device::Device& device, const Level& level) {
   unit_ = room(vec3_bytes, "scale, before");
   weights_ = room(level.tet_count() * sizeof(glm::vec2), "weights");
   total_ = room(sizeof(float), "total weight");
+  const std::vector<std::uint32_t> boundary = nearest_boundary(level);
+  if (!boundary.empty()) boundary_ = device::upload<std::uint32_t>(device, boundary, "transport/nearest boundary");
   drawn_ = room(sizeof(std::uint32_t), "points drawn");
   load_ = room(2 * halves * level.vertex_count() * sum_bytes, "load");
   gathered_ = room(halves * level.face_count() * vec3_bytes, "gathered exitance");
@@ -201,6 +204,9 @@ void TransportSamples::record_weights(const TransportParts& parts) {
                                           .tets = level.tets.address(),
                                           .optical = level.optical.address(),
                                           .nearest = parts.nearest.address(),
+                                          .boundary = boundary_.size() > 0 ? boundary_.address() : 0,
+                                          .tet_offset = tet_offset_.address(),
+                                          .tet_incidence = tet_incidence_.address(),
                                           .weights = weights_.address(),
                                           .total = total_.address(),
                                           .reduction = work.reduction.address(),

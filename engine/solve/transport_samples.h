@@ -170,7 +170,8 @@ class TransportSamples {
   device::Buffer optical_before_;                           // gpu::Optical per tet, or one
   bool even_before_ = false;                                // there is one
   device::Buffer weights_, total_;                          // vec2 per tet; float
-  device::Buffer drawn_, points_;                           // uint; TransportPoint
+  device::Buffer boundary_;        // nearest_boundary of each vertex; empty where no bodies share a surface
+  device::Buffer drawn_, points_;  // uint; TransportPoint
   device::Buffer load_, gathered_;
   device::Buffer tet_offset_, tet_incidence_, mass_;  // tets around each vertex
   device::Buffer point_sums_, books_;

@@ -130,6 +130,8 @@ void bind_graph(py::module_& module) {
           },
           "The display mesh: vertices, normals, triangles, face, barycentric.")
       .def_property_readonly("bodies", &QuadGraph::bodies, "Names of the bodies; empty: one without a name.")
+      .def_property_readonly("hosts", &QuadGraph::hosts,
+                             "Of each body the number of the one that it lies within; its own where there is none.")
       .def_property_readonly("metadata", &QuadGraph::metadata, "JSON text.")
       .def_property_readonly("front", &QuadGraph::front,
                              "Azimuth in degrees about y from where the body is shown when nobody says so.")

@@ -184,6 +184,7 @@ py::dict as_dict(const SolveReport& report) {
   d["model_warning"] = report.model_warning;
   d["size_warning"] = report.size_warning;
   d["phase_warning"] = report.phase_warning;
+  d["index_warning"] = report.index_warning;
   d["light_warning"] = report.light_warning;
   d["deformed"] = report.deformed;
   d["exchange_age"] = report.exchange_age;

@@ -18,6 +18,10 @@ const uint TRANSPORT_HALVES = 2u;
 // matters to what leaves in thick bodies alone, but there it does.
 const float TRANSPORT_FLOOR = 0.03f;
 
+// Of bodies that share a surface, the most points for each mm^3 in one, times those in what is around it, and the
+// least.
+const float TRANSPORT_DENSER = 16.0f;
+
 // A ray that keeps less than this goes on by chance, with this weight.
 const float TRANSPORT_ROULETTE = 0.05f;
 

@@ -115,11 +115,19 @@ class Engine:
         return tuple(self._engine.graph.bodies)
 
     @property
+    def hosts(self) -> dict[str, str]:
+        """Of each of `bodies` that lies within another's solid and shares its surface with it, the name of that one."""
+        names = self.bodies
+        found = zip(names, self._engine.graph.hosts, strict=True)
+        return {name: names[host] for name, host in found if names[host] != name}
+
+    @property
     def materials(self) -> dict[str, Material | str]:
         """What was set for bodies by their names, each a `Material` or a text as --material takes it.
 
         To set them, a mapping: bodies that it does not name have `material`, which is wanted then. To set `material`
-        sets all bodies. Raises InputError, also for a body that the file does not have.
+        sets all bodies. One of `hosts` has the index of refraction of the outermost body around it, which the report of
+        a solve says. Raises InputError, also for a body that the file does not have.
         """
         return dict(self._materials)
 
@@ -186,8 +194,9 @@ class Engine:
         """Put one of `bodies` elsewhere: turned about the middle of its box, degrees about the axes x, y and z in this
         order, then moved, mm, from where it lies in the file; without either it lies there again.
 
-        A deformation comes after it. Shadows, what bodies see of each other and the light between them follow at the
-        next solve, which says where bodies overlap. Raises InputError, and moves nothing.
+        A deformation comes after it. Those within a body go with it, and by themselves nowhere (`hosts`). Shadows, what
+        bodies see of each other and the light between them follow at the next solve, which says where bodies overlap.
+        Raises InputError, and moves nothing.
         """
         pose = {"position": triple("position", position), "rotation": triple("rotation", rotation)}
         wanted = {**self._placements, name: pose}

@@ -165,12 +165,12 @@ class Solution:
     material that says its g; advice: of an error above 5%, where it comes from and what to do; inter_reflection:
     whether it was followed; bounces: (n, 3) W that each brought in; unmet: what was asked for and is not met, in words;
     missed: of that, the error; stopped: of that, how the solve did not converge; budget: what the bake of the file has
-    to say of the error that was asked for; mesh_warning, model_warning, size_warning, phase_warning, light_warning,
-    deformed: what else is to be said against the answer; exchange_age: solves by which what some face sees is behind
-    the shape; correction: what sweeps did, None without; certificate: what random walks measured, None without
-    `certify`; carried: of a frame that carries a correction on as a factor the share of light and material that is as
-    it was, else None; path: of the method shortest-path, which has no levels, energy balance and estimates. Texts are
-    empty where there is nothing to say.
+    to say of the error that was asked for; mesh_warning, model_warning, size_warning, phase_warning, index_warning,
+    light_warning, deformed: what else is to be said against the answer; exchange_age: solves by which what some face
+    sees is behind the shape; correction: what sweeps did, None without; certificate: what random walks measured, None
+    without `certify`; carried: of a frame that carries a correction on as a factor the share of light and material that
+    is as it was, else None; path: of the method shortest-path, which has no levels, energy balance and estimates. Texts
+    are empty where there is nothing to say.
     """
 
     method: str
@@ -202,6 +202,7 @@ class Solution:
     model_warning: str
     size_warning: str
     phase_warning: str
+    index_warning: str
     light_warning: str
     deformed: str
     exchange_age: int

@@ -25,6 +25,7 @@ _WARNINGS = (
     "model_warning",
     "size_warning",
     "phase_warning",
+    "index_warning",
     "light_warning",
     "deformed",
     "missed",

@@ -13,18 +13,19 @@ from typing import Any
 import numpy as np
 
 from quadgraph.baking import pipeline
+from quadgraph.baking.embedding import Embedded
 from quadgraph.baking.pipeline import BakeOptions, Level, Prepared
-from quadgraph.baking.placing import BodyPlacement, check_apart
-from quadgraph.baking.placing import joined as joined_surface
+from quadgraph.baking.placing import BodyPlacement, hosts_of
 from quadgraph.baking.report import BakeReport
 from quadgraph.base import outputs
 from quadgraph.base.errors import InputError, ToolError
 from quadgraph.base.progress import ProgressCallback
 from quadgraph.file import joined, sections
 from quadgraph.mesh import front, mesh_io, mesh_size, named_parts
-from quadgraph.mesh.surface import FileFrame, SourceMesh
+from quadgraph.mesh.surface import FileFrame, SourceMesh, Surface, joined_surface
 from quadgraph.tets import exchange, ordering
 from quadgraph.tets.graph import Graph
+from quadgraph.tets.tet_geometry import determinants
 
 MOST_NAME_BYTES = 64
 LEAST_VERTICES = 4  # of a surface: a tetrahedron's
@@ -59,8 +60,9 @@ def bake_bodies(
     """Bake meshes into one file of several bodies, and report.
 
     options: of each body alike, `surface_vertices` of each by itself; size, `up`, `wrap` and `normals` are those of the
-    bodies. Raises InputError for unusable input or options, and for bodies that cut, touch or lie within each other,
-    which it names; ToolError as `pipeline.bake`. `output` is written last and at once.
+    bodies. A body that lies wholly within another's solid shares its surface with it; the report says so. Raises
+    InputError for unusable input or options, and for bodies that cut or touch each other, which it names; ToolError as
+    `pipeline.bake`. `output` is written last and at once.
     """
     tell = progress or (lambda text: None)
     check(bodies, options)
@@ -69,13 +71,25 @@ def bake_bodies(
     report, start = BakeReport(str(output)), time.perf_counter()
     prepared = [_prepared(body, options, report, tell) for body in bodies]
     with report.timed("keep apart"):
-        check_apart([each.surface for each in prepared], [body.name for body in bodies])
-    made = []
-    for body, each in zip(bodies, prepared, strict=True):
-        with _reporting(body, report) as of_body:
-            own = replace(options, surface_vertices=body.surface_vertices or options.surface_vertices)
-            made.append(pipeline.make_levels(each.surface, own, of_body, _telling(body, tell)))
-    _write(bodies, prepared, made, options, report)
+        hosts = hosts_of([each.surface for each in prepared], [body.name for body in bodies])
+    report.notes += [
+        f"{body.name}: lies within {bodies[host].name} and shares its surface with it, with no air between"
+        for body, host in zip(bodies, hosts, strict=True)
+        if host is not None
+    ]
+    solids = []
+    for numbers in _solids(hosts):
+        first = bodies[numbers[0]]
+        shapes = [
+            Embedded(bodies[n].name, prepared[n].surface, bodies[n].surface_vertices or options.surface_vertices)
+            for n in numbers
+        ]
+        with _reporting(first, report) as of_body:
+            own = replace(options, surface_vertices=shapes[0].surface_vertices)
+            told = _telling(first, tell)
+            levels = pipeline.make_levels(shapes[0].surface, own, of_body, told, shapes[1:])
+        solids.append(_Solid(numbers, levels))
+    _write(bodies, prepared, solids, hosts, options, report)
     report.seconds["total"] = time.perf_counter() - start
     return report
 
@@ -131,6 +145,28 @@ def parts_as_bodies(mesh: Path, options: BakeOptions) -> list[BodyMesh]:
     return [BodyMesh(name, mesh, part=name, **sizes) for name in found]
 
 
+@dataclass(frozen=True)
+class _Solid:
+    """What has no air within: numbers of a body and of those within it, which the graphs of its levels count so."""
+
+    numbers: list[int]
+    levels: list[Level]
+
+
+def _solids(hosts: Sequence[int | None]) -> list[list[int]]:
+    """Of each outermost body its number, and then those of all that lie within it."""
+
+    def outermost(number: int) -> int:
+        host = hosts[number]
+        return number if host is None else outermost(host)
+
+    solids: dict[int, list[int]] = {number: [number] for number, host in enumerate(hosts) if host is None}
+    for number, host in enumerate(hosts):
+        if host is not None:
+            solids[outermost(number)].append(number)
+    return list(solids.values())
+
+
 def _telling(body: BodyMesh, tell: ProgressCallback) -> ProgressCallback:
     return lambda text: tell(f"{body.name}: {text}")
 
@@ -172,29 +208,39 @@ def _prepared(body: BodyMesh, options: BakeOptions, report: BakeReport, tell: Pr
 def _write(
     bodies: Sequence[BodyMesh],
     prepared: Sequence[Prepared],
-    made: Sequence[list[Level]],
+    solids: Sequence[_Solid],
+    hosts: Sequence[int | None],
     options: BakeOptions,
     report: BakeReport,
 ) -> None:
     with report.timed("surface"):
-        meshes = [pipeline.shown(each, options) for each in prepared]
+        outer = [pipeline.shown(prepared[solid.numbers[0]], options) for solid in solids]
     with report.timed("transfers"):
-        content = joined.join(
-            [
-                sections.whole_file([level.graph for level in levels], each.surface, normals=each.normals)
-                for each, levels in zip(meshes, made, strict=True)
-            ]
-        )
+        parts = [
+            sections.whole_file([level.graph for level in solid.levels], each.surface, normals=each.normals)
+            for each, solid in zip(outer, solids, strict=True)
+        ]
+        content = joined.join(parts, [solid.numbers for solid in solids])
     graphs = joined.graphs(content)
     with report.timed("exchange"):
         seen = exchange.bake(graphs, options.visibility_rays)
     if seen is not None:
         report.exchange = exchange.summary(seen, graphs[seen.level].boundary)
     levels = [
-        _joined_level(graph, [each[min(number, len(each) - 1)] for each in made]) for number, graph in enumerate(graphs)
+        _joined_level(graph, [solid.levels[min(number, len(solid.levels) - 1)] for solid in solids])
+        for number, graph in enumerate(graphs)
     ]
-    whole = _whole(bodies, prepared, options)
-    more = {"bodies": [_metadata(*each) for each in zip(bodies, prepared, made, strict=True)]}
+    whole = _whole(bodies, prepared, joined_surface([each.surface for each in outer]), options)
+    finest = content["level0/tet_bodies"]
+    volumes = determinants(graphs[0].vertices, graphs[0].tets) / 6
+    tets, volume = np.bincount(finest), np.bincount(finest, volumes)
+    within = [{} if host is None else {"within": bodies[host].name} for host in hosts]
+    more = {
+        "bodies": [
+            _metadata(body, each) | {"tets": int(tets[n]), "volume_mm3": float(volume[n])} | within[n]
+            for n, (body, each) in enumerate(zip(bodies, prepared, strict=True))
+        ]
+    }
     pipeline.finish(whole, levels, joined.with_seen(content, seen), options, report, more)
 
 
@@ -221,9 +267,10 @@ def _joined_level(graph: Graph, parts: Sequence[Level]) -> Level:
     return Level(graph, parts[0].mesher, told, inside=(within[0][0], largest))
 
 
-def _whole(bodies: Sequence[BodyMesh], prepared: Sequence[Prepared], options: BakeOptions) -> Prepared:
-    """All bodies as one mesh in mm."""
-    surface = joined_surface([each.surface for each in prepared])
+def _whole(
+    bodies: Sequence[BodyMesh], prepared: Sequence[Prepared], surface: Surface, options: BakeOptions
+) -> Prepared:
+    """All bodies as one mesh; surface: what is seen of them, mm."""
     digest = hashlib.sha256("".join(each.source.sha256 for each in prepared).encode()).hexdigest()
     name = ", ".join(body.mesh.name for body in bodies)
     counts = (sum(getattr(each.source, what) for each in prepared) for what in ("vertices", "triangles"))
@@ -232,8 +279,8 @@ def _whole(bodies: Sequence[BodyMesh], prepared: Sequence[Prepared], options: Ba
     return Prepared(source, surface, [repair for each in prepared for repair in each.repairs], azimuth)
 
 
-def _metadata(body: BodyMesh, prepared: Prepared, made: Sequence[Level]) -> dict[str, Any]:
-    """What the file tells of one of its bodies."""
+def _metadata(body: BodyMesh, prepared: Prepared) -> dict[str, Any]:
+    """What the file tells of one of its bodies, but for its tets."""
     low, high = prepared.surface.vertices.min(axis=0), prepared.surface.vertices.max(axis=0)
     return {
         "name": body.name,
@@ -246,6 +293,4 @@ def _metadata(body: BodyMesh, prepared: Prepared, made: Sequence[Level]) -> dict
         "surface_vertices": body.surface_vertices,
         "normals": prepared.normals.metadata(),
         "box_mm": [low.tolist(), high.tolist()],
-        "tets": len(made[0].graph.tets),
-        "volume_mm3": made[0].graph.volume,
     }

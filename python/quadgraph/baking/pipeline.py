@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import contextvars
 import importlib.metadata
 import platform
 import resource
 import sys
 import time
-from collections.abc import Callable, Iterator
-from concurrent.futures import Future, ThreadPoolExecutor
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Future
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
@@ -18,15 +17,17 @@ from typing import Any
 import numpy as np
 
 from quadgraph.baking import inside, surface_changes
+from quadgraph.baking.embedding import Embedded, LevelSurfaces, Nest
 from quadgraph.baking.inside import LevelSizes
 from quadgraph.baking.report import BakeReport
+from quadgraph.baking.workers import workers
 from quadgraph.base import child_process, outputs
 from quadgraph.base.errors import InputError, QuadGraphError, ToolError
 from quadgraph.base.progress import ProgressCallback
 from quadgraph.base.version import __version__
 from quadgraph.core import load_core
 from quadgraph.file import qgraph_file, sections
-from quadgraph.mesh import front, lod, mesh_io, solid, subdivide, wrap
+from quadgraph.mesh import front, mesh_io, solid, subdivide, wrap
 from quadgraph.mesh.looks import file_normals
 from quadgraph.mesh.looks.file_normals import COMPUTED, FoundNormals
 from quadgraph.mesh.surface import MesherInfo, Repair, SourceMesh, Surface
@@ -41,7 +42,6 @@ from quadgraph.tets.tetrahedralise import (
 
 ORDERS = {"blocks": ordering.in_blocks, "random": ordering.at_random}
 MOST_STEPS = 10000  # that spread the inner nodes
-WORKERS = 2  # levels filled with tets at the same time
 _PACKAGES = ("numpy", "scipy", "pymeshlab", "trimesh")
 _OPTIONS = ("up", "wrap", "levels", "surface_vertices", "refine", "interior", "for_materials", "relax_nodes", "order",
             "visibility_rays", "cubes", "cells", "normals")  # fmt: skip
@@ -251,33 +251,36 @@ def _check_polygrid_options(options: BakeOptions) -> None:
             raise InputError(f"{name}: found with mesher {options.mesher!r}, only 'polygrid' has them")
 
 
-def make_levels(surface: Surface, options: BakeOptions, report: BakeReport, tell: ProgressCallback) -> list[Level]:
-    """Levels of a surface, finest first. Raises InputError or ToolError where there is no finest one."""
+def make_levels(
+    surface: Surface,
+    options: BakeOptions,
+    report: BakeReport,
+    tell: ProgressCallback,
+    within: Sequence[Embedded] = (),
+) -> list[Level]:
+    """Levels of a surface and of those within it, whose numbers from 1 on are the regions of the graphs, finest first.
+
+    Raises InputError or ToolError where there is no finest level.
+    """
     surface = surface.rounded()
     if options.mesher == "polygrid":
         return _polygrid_levels(surface, options, report, tell)
-    with _workers() as submit:
+    with workers() as submit:
         with report.timed("simplify"):
-            finest = _finest(surface, options)
-        sizes = inside.sizes_of(finest, options.interior, options.for_materials, options.mesher)
+            nest = Nest(surface, within, options.refine, options.surface_vertices)
+        sizes = inside.sizes_of(nest.finest.outer, options.interior, options.for_materials, options.mesher)
         with report.timed("surface"):
-            cut = surface_changes.refined(finest, options.for_materials, options.mesher)
-        finest = cut.surface
-        report.notes += [cut.note] if cut.note else []
+            cut = surface_changes.refined(nest.finest.outer, options.for_materials, options.mesher)
+            if nest.takes(cut.surface) and cut.note:
+                report.notes.append(cut.note)
         # The finest level takes longest: its tets are made while the chain below it is.
-        jobs = [submit(_make_level, finest, options, sizes, 0)]
+        jobs = [submit(_make_level, nest.finest, options, sizes, 0)]
         with report.timed("simplify"):
-            chain = lod.build_chain(finest, levels=options.levels, progress=tell)
-        report.notes.append(f"the chain ends after level {len(chain) - 1}: {chain.ended}")
+            chain, notes = nest.chain(options.levels, tell)
+        report.notes += notes
         jobs += [submit(_make_level, coarse, options, sizes, number) for number, coarse in enumerate(chain[1:], 1)]
         with report.timed("tetrahedra and graphs"):
             return _collect(jobs, report, tell)
-
-
-def _finest(surface: Surface, options: BakeOptions) -> Surface:
-    """The finest simulation surface."""
-    finest = subdivide.subdivide(surface, options.refine)
-    return lod.simplify(finest, options.surface_vertices) if options.surface_vertices else finest
 
 
 def shown(prepared: Prepared, options: BakeOptions) -> Prepared:
@@ -287,22 +290,6 @@ def shown(prepared: Prepared, options: BakeOptions) -> Prepared:
     if not cut.cuts:
         return prepared
     return replace(prepared, surface=cut.straight(surface), normals=prepared.normals.cut(surface, cut.cuts))
-
-
-@contextmanager
-def _workers() -> Iterator[Callable[..., Future]]:
-    """Threads for the block's work; what has not begun at its end never does, and child programs are stopped."""
-    pool = ThreadPoolExecutor(WORKERS)
-
-    def submit(*call: Any) -> Future:
-        in_context: Callable[..., Any] = contextvars.copy_context().run
-        return pool.submit(in_context, *call)
-
-    with child_process.stopped_on_exit():
-        try:
-            yield submit
-        finally:
-            pool.shutdown(wait=False, cancel_futures=True)
 
 
 def _collect(jobs: list[Future[Level]], report: BakeReport, tell: ProgressCallback) -> list[Level]:
@@ -327,13 +314,13 @@ def _polygrid_levels(surface: Surface, options: BakeOptions, report: BakeReport,
     return [_ordered_level(built, made.mesher, len(built.tets), {}, options) for built in made.graphs]
 
 
-def _make_level(surface: Surface, options: BakeOptions, sizes: LevelSizes, number: int) -> Level:
+def _make_level(surfaces: LevelSurfaces, options: BakeOptions, sizes: LevelSizes, number: int) -> Level:
     """Tets, graph, even nodes, cache-local order."""
     clock = [time.perf_counter()]
     limits: dict[str, Any] = {"time_limit_s": options.time_limit_s, "memory_limit_bytes": options.memory_limit_bytes}
     mesh, edge, notes = sizes.fill(
-        number, surface, lambda within: tetrahedralise(surface, mesher=options.mesher, grading=options.grading,
-                                                       limits=within, **limits)
+        number, surfaces.whole, lambda most: tetrahedralise(surfaces.outer, mesher=options.mesher, inner=surfaces.inner,
+                                                            grading=options.grading, limits=most, **limits)
     )  # fmt: skip
     clock.append(time.perf_counter())
     built = graph.build(mesh)

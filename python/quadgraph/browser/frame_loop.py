@@ -249,6 +249,7 @@ def _notes(solution: Solution | None) -> list[str]:
     if solution is None:
         return []
     said = [solution.stopped, solution.missed, solution.mesh_warning]
-    said += [solution.model_warning, solution.size_warning, solution.phase_warning, solution.light_warning]
+    said += [solution.model_warning, solution.size_warning, solution.phase_warning]
+    said += [solution.index_warning, solution.light_warning]
     said += [solution.deformed, solution.advice]
     return list(dict.fromkeys(text for text in said if text))

@@ -50,9 +50,9 @@ _SIDES = ("/picture/width", "/picture/height")
 class ShownScene:
     """A scene with all members filled in, and the steps back from it."""
 
-    def __init__(self, scene: Scene, bodies: Sequence[str] = ()) -> None:
-        """Hold a scene; bodies: those that its file names. Raises InputError for shapes in memory."""
-        self._bodies = tuple(bodies)
+    def __init__(self, scene: Scene, bodies: Sequence[str] = (), hosts: Mapping[str, str] | None = None) -> None:
+        """Hold a scene; bodies, hosts: those that its file names (`Engine`). Raises InputError for shapes in memory."""
+        self._bodies, self._hosts = tuple(bodies), hosts or {}
         self._start = scene.to_dict()
         materials = [self._start.get("material"), *self._start.get("materials", {}).values()]
         self._files = {*files(self._start), *(name for each in materials for name in material_files(each))}
@@ -110,12 +110,13 @@ class ShownScene:
             self._change(pointer, {"/materials": {**self.document.get("materials", {}), body: value}})
         elif pointer.startswith("/placements/"):
             body, *member = pointer.removeprefix("/placements/").split("/")
-            self._check_bodies([body])
+            self._check_placed([body])
             poses = self.document.get("placements", {})
             pose = {**poses.get(body, {}), member[0]: value} if member else value
             self._change(pointer, {"/placements": {**poses, body: pose}})
         elif pointer in {"/materials", "/placements"}:
-            self._check_bodies(value if isinstance(value, dict) else [])
+            names = value if isinstance(value, dict) else []
+            (self._check_bodies if pointer == "/materials" else self._check_placed)(names)
             self._change(pointer, {pointer: value})
         elif pointer.split("/")[1] == "material":
             self._change(pointer, {pointer: value, "/materials": {}})  # that of all bodies
@@ -275,6 +276,14 @@ class ShownScene:
             if name not in self._bodies:
                 allowed = ", ".join(self._bodies) or "none, it is one body"
                 raise InputError(f"bodies: found {shown(name)}, the file has {allowed}")
+
+    def _check_placed(self, names: Iterable[str]) -> None:
+        names = list(names)
+        self._check_bodies(names)
+        for name in names:
+            if name in self._hosts:
+                raise InputError(f"placements: found {shown(name)}, which moves with {self._hosts[name]}, within which "
+                                 "it lies")  # fmt: skip
 
     def _check(self, pointer: str, value: Any) -> None:
         named = set(files(value))

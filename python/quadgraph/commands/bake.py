@@ -38,7 +38,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "--join",
         action="store_true",
         help="several meshes as the bodies of one file, named as their files are, where they lie in coordinates that "
-        "they share; the size is that of all together",
+        "they share; the size is that of all together. One that lies wholly within another shares its surface with it",
     )
     parser.add_argument(
         "--parts",

@@ -124,12 +124,12 @@ def _print_facts(name: str, facts: dict[str, Any]) -> None:
 
 
 def _body_table(bodies: list[dict[str, Any]]) -> Table:
-    table = Table("body", "mesh", "size, mm", "position, mm", "tets", "volume, mm3")
+    table = Table("body", "within", "mesh", "size, mm", "position, mm", "tets", "volume, mm3")
     for body in bodies:
         low, high = body["box_mm"]
         size = " x ".join(f"{b - a:.4g}" for a, b in zip(low, high, strict=True))
         place = ", ".join(f"{x:.4g}" for x in body["position"])
-        names = (printable(str(text)) for text in (body["name"], body["source"]["name"]))
+        names = (printable(str(text)) for text in (body["name"], body.get("within", ""), body["source"]["name"]))
         table.add_row(*map(escape, names), size, place, f"{body['tets']:,}", f"{body['volume_mm3']:,.1f}")
     return table
 

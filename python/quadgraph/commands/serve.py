@@ -66,13 +66,14 @@ def run(args: argparse.Namespace) -> int:
         raise InputError(f"{_TOKEN}: found {len(token)} letters, allowed are at least {_LEAST_TOKEN}")
     with _scene(args) as scene, Stage(device=args.device) as stage:
         stage.show(scene)
-        shown = ShownScene(scene, stage.engine.bodies)
+        shown = ShownScene(scene, stage.engine.bodies, stage.engine.hosts)
         low, high = stage.engine.box
         hello = {
             "file": args.file.name,
             "materials": list(core.material_names()),
             "tones": list(get_args(Tone)),
             "bodies": list(stage.engine.bodies),
+            "hosts": stage.engine.hosts,
             "methods": list(stage.methods),
             "models": list(get_args(Model)),
             "brush": stage.usual_brush,

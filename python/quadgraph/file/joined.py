@@ -21,22 +21,26 @@ def level_count(sections: Sections) -> int:
     return sum(name.startswith("level") and name.endswith("/vertices") for name in sections)
 
 
-def join(bodies: Sequence[Sections]) -> dict[str, np.ndarray]:
+def join(bodies: Sequence[Sections], numbers: Sequence[Sequence[int]] | None = None) -> dict[str, np.ndarray]:
     """All sections of a file of these bodies, in file order, but for the metadata and what faces see.
 
     bodies: the sections of files of one body each, with levels; where one has fewer than another its coarsest is
-    repeated. Raises InputError for more bodies than a file can hold, for a body without levels, and for a polygrid.
+    repeated. numbers: of each, what it and those within it, which its `tet_bodies` count, are in the file; None: one
+    after the other, nothing within any. Raises InputError for more bodies than a file can hold, for a body without
+    levels, and for a polygrid.
     """
-    if len(bodies) > MOST_BODIES:
-        raise InputError(f"bodies: {len(bodies)} found, at most {MOST_BODIES} allowed in one file")
-    for body in bodies:
-        if not level_count(body) or "level0/grid_links" in body or "level0/tet_bodies" in body:
+    numbers = [[number] for number in range(len(bodies))] if numbers is None else numbers
+    if (count := sum(map(len, numbers))) > MOST_BODIES:
+        raise InputError(f"bodies: {count} found, at most {MOST_BODIES} allowed in one file")
+    for body, own in zip(bodies, numbers, strict=True):
+        nested = len(own) > 1
+        if not level_count(body) or "level0/grid_links" in body or ("level0/tet_bodies" in body) != nested:
             raise InputError("bodies: one without levels, of a polygrid or of several bodies, which cannot be joined")
     levels = max(map(level_count, bodies))
     padded = [_padded(body, levels) for body in bodies]
     joined: dict[str, np.ndarray] = {}
     for number in range(levels):
-        joined |= _level(number, padded)
+        joined |= _level(number, padded, numbers)
         if number + 1 < levels:
             joined |= _transfers(number, padded)
     return joined | _display(padded)
@@ -108,7 +112,7 @@ def _by_vertex(number: int, bodies: Sequence[Sections], rows: Sequence[np.ndarra
     return np.concatenate(rows)[order]
 
 
-def _level(number: int, bodies: Sequence[Sections]) -> dict[str, np.ndarray]:
+def _level(number: int, bodies: Sequence[Sections], body_numbers: Sequence[Sequence[int]]) -> dict[str, np.ndarray]:
     def of(name: str) -> list[np.ndarray]:
         return [body[f"level{number}/{name}"] for body in bodies]
 
@@ -119,6 +123,7 @@ def _level(number: int, bodies: Sequence[Sections]) -> dict[str, np.ndarray]:
         np.where(own < count, own + tet, own.astype(np.int64) - count + sum(tets) + face)
         for own, count, tet, face in zip(of("links"), tets, first_tet, first_face, strict=True)
     ]
+    regions = [body.get(f"level{number}/tet_bodies", np.zeros(n, "u1")) for body, n in zip(bodies, tets, strict=True)]
     nodes = [(own[:count], own[count:]) for own, count in zip(of("nodes"), tets, strict=True)]
     kinds: dict[str, np.ndarray] = {}
     if any(f"level{number}/face_kinds" in body for body in bodies):
@@ -136,7 +141,9 @@ def _level(number: int, bodies: Sequence[Sections]) -> dict[str, np.ndarray]:
         "links": np.concatenate(links).astype("<u4"),
         "nodes": np.concatenate([inner for inner, _ in nodes] + [surface for _, surface in nodes]),
         **kinds,
-        "tet_bodies": np.repeat(np.arange(len(bodies), dtype="u1"), tets),
+        "tet_bodies": np.concatenate(
+            [np.array(of_body, "u1")[region] for of_body, region in zip(body_numbers, regions, strict=True)]
+        ),
     }
     return {f"level{number}/{name}": array for name, array in made.items()}
 

@@ -29,6 +29,7 @@ def _f32(array: np.ndarray) -> np.ndarray:
 def level(number: int, graph: Graph) -> dict[str, np.ndarray]:
     """Sections of one level, transfers excepted."""
     kinds = {} if graph.face_kinds is None else {f"level{number}/face_kinds": _u32(graph.face_kinds)}
+    regions = {} if graph.regions is None else {f"level{number}/tet_bodies": np.ascontiguousarray(graph.regions, "u1")}
     grid = {} if graph.grid_links is None else {f"level{number}/grid_links": _u32(graph.grid_links)}
     always = {
         f"level{number}/vertices": _f32(graph.vertices),
@@ -38,7 +39,7 @@ def level(number: int, graph: Graph) -> dict[str, np.ndarray]:
         f"level{number}/links": _u32(graph.links),
         f"level{number}/nodes": _f32(graph.nodes),
     }
-    return always | kinds | grid
+    return always | kinds | regions | grid
 
 
 def transfers(number: int, fine: Graph, coarse: Graph) -> dict[str, np.ndarray]:

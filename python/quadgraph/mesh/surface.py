@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -168,6 +169,13 @@ class Surface:
         return Surface(self.vertices.astype(np.float32).astype(np.float64), self.triangles)
 
 
+def joined_surface(surfaces: Sequence[Surface]) -> Surface:
+    """Several surfaces as one, their vertices and triangles one after the other."""
+    offsets = np.cumsum([0] + [len(surface.vertices) for surface in surfaces])
+    triangles = [surface.triangles + offset for surface, offset in zip(surfaces, offsets, strict=False)]
+    return Surface(np.concatenate([surface.vertices for surface in surfaces]), np.concatenate(triangles))
+
+
 @dataclass(frozen=True)
 class FileFrame:
     """How a file has what we have in mm with y up. unit_mm: length of one unit of the file, mm; up: "y" or "z"."""
@@ -245,12 +253,14 @@ class TetMesh:
     """Tetrahedra of one closed surface.
 
     vertices: (n, 3) float64, mm, exactly representable in float32;
-    tets: (m, 4) int64, det(v1-v0, v2-v0, v3-v0) > 0.
+    tets: (m, 4) int64, det(v1-v0, v2-v0, v3-v0) > 0; regions: (m,) int64, which of the surfaces within it each lies in,
+    counted from 1, and 0 in none; None where there is no such surface.
     """
 
     vertices: np.ndarray
     tets: np.ndarray
     mesher: MesherInfo = NO_MESHER
+    regions: np.ndarray | None = None
 
     @cached_property
     def determinants(self) -> np.ndarray:

@@ -31,10 +31,13 @@ def _hole_points(surface: Surface) -> np.ndarray:
     return np.array(points).reshape(-1, 3)
 
 
-def write_smesh(surface: Surface, path: Path) -> None:
-    """Write a closed surface as TetGen's .smesh with 17 digits, so that the program reads the very same doubles."""
+def write_smesh(surface: Surface, path: Path, outer: Surface | None = None) -> None:
+    """Write closed surfaces as TetGen's .smesh with 17 digits, so that the program reads the very same doubles.
+
+    outer: of them the one whose cavities stay empty, None for all.
+    """
     n, m = len(surface.vertices), len(surface.triangles)
-    found = _hole_points(surface)
+    found = _hole_points(outer or surface)
     points, holes = (
         "".join(f"{i} {x!r} {y!r} {z!r}\n" for i, (x, y, z) in enumerate(rows.tolist()))
         for rows in (surface.vertices, found)

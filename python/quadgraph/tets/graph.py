@@ -34,7 +34,7 @@ class Graph:
     for outside face f; inner: (n_t, 3) and surface: (n_f, 3) float64, node positions, mm; face_kinds: (n_f,) int64 of
     OPEN and REFLECTING, None if all faces are open; grid_links: (n_v - n_s, 6) int64, the six links of each vertex
     below the surface in a polygrid (tets/polygrid/lattice.py), its own number where one is missing; None if the
-    vertices are no polygrid's.
+    vertices are no polygrid's; regions: (n_t,) int64, as of TetMesh.
     """
 
     vertices: np.ndarray
@@ -46,6 +46,7 @@ class Graph:
     surface: np.ndarray
     face_kinds: np.ndarray | None = None
     grid_links: np.ndarray | None = None
+    regions: np.ndarray | None = None
 
     @property
     def nodes(self) -> np.ndarray:
@@ -75,11 +76,11 @@ def build(mesh: TetMesh) -> Graph:
     no float32 point lies inside.
     """
     vertices, tets = np.asarray(mesh.vertices, np.float64), np.asarray(mesh.tets, np.int64)
-    neighbours = _neighbours(tets)
+    regions, neighbours = mesh.regions, neighbours_of(tets)
     several = (neighbours < 0).sum(axis=1) > 1
     if several.any():
-        vertices, tets = _split(vertices, tets, several)
-        neighbours = _neighbours(tets)
+        vertices, tets, regions = _split(vertices, tets, several, regions)
+        neighbours = neighbours_of(tets)
     face_tets, corner = np.nonzero(neighbours < 0)
     faces = tets[face_tets[:, None], FACE_CORNERS[corner]]
     if not Surface(vertices, faces).is_closed_manifold:
@@ -88,10 +89,10 @@ def build(mesh: TetMesh) -> Graph:
     links[face_tets, corner] = len(tets) + np.arange(len(faces))
     vertices, (tets, faces) = first_use(vertices, faces, tets, faces)
     inner, surface = vertices[tets].mean(axis=1), vertices[faces].mean(axis=1)
-    return Graph(vertices, tets, faces, face_tets, links, inner, surface)
+    return Graph(vertices, tets, faces, face_tets, links, inner, surface, regions=regions)
 
 
-def _neighbours(tets: np.ndarray) -> np.ndarray:
+def neighbours_of(tets: np.ndarray) -> np.ndarray:
     """(n_t, 4) tet across the face opposite to each vertex; -1 outside."""
     corners = np.sort(tets[:, FACE_CORNERS].reshape(-1, 3), axis=1)
     order = np.lexsort((corners[:, 2], corners[:, 1], corners[:, 0]))
@@ -106,14 +107,18 @@ def _neighbours(tets: np.ndarray) -> np.ndarray:
     return neighbours.reshape(-1, 4)
 
 
-def _split(vertices: np.ndarray, tets: np.ndarray, several: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Cut the tets of (n_t,) `several` in four around a point inside."""
+def _split(
+    vertices: np.ndarray, tets: np.ndarray, several: np.ndarray, regions: np.ndarray | None
+) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
+    """Cut the tets of (n_t,) `several` in four around a point inside; with the regions that those lie in."""
     corners = vertices[tets[several]]
     points = _points_inside(corners)
     numbers = len(vertices) + np.arange(len(points))
     extended = np.concatenate([tets[several], numbers[:, None]], axis=1)
     pieces = extended[:, _SPLIT].reshape(-1, 4)
-    return np.concatenate([vertices, points]), np.concatenate([tets[~several], pieces])
+    if regions is not None:
+        regions = np.concatenate([regions[~several], np.repeat(regions[several], len(_SPLIT))])
+    return np.concatenate([vertices, points]), np.concatenate([tets[~several], pieces]), regions
 
 
 def _points_inside(corners: np.ndarray) -> np.ndarray:

@@ -115,6 +115,7 @@ def with_vertices(graph: Graph, order: np.ndarray) -> Graph:
         graph.surface,
         graph.face_kinds,
         _grid_links(graph, number),
+        graph.regions,
     )
 
 
@@ -146,6 +147,7 @@ def renumbered(graph: Graph, tet_order: np.ndarray, face_order: np.ndarray) -> G
         graph.surface[face_order],
         None if graph.face_kinds is None else graph.face_kinds[face_order],
         _grid_links(graph, vertex_number),
+        None if graph.regions is None else graph.regions[tet_order],
     )
 
 

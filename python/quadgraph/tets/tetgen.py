@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cache, partial
 from pathlib import Path
 
@@ -17,7 +17,7 @@ import numpy as np
 from quadgraph.base.child_process import run, workspace
 from quadgraph.base.errors import ToolError
 from quadgraph.mesh.intersections import TETGEN
-from quadgraph.mesh.surface import MesherInfo, Surface
+from quadgraph.mesh.surface import MesherInfo, Surface, joined_surface
 from quadgraph.mesh.tet_files import read_tets, write_smesh, write_volumes
 
 OPTIONS = "-pYq1.4/0"  # piecewise linear complex, surface kept, radius-edge ratio 1.4, no dihedral bound
@@ -32,13 +32,15 @@ def fill(
     time_limit_s: float,
     memory_limit_bytes: int,
     limits: Callable[[np.ndarray, np.ndarray], np.ndarray | None] | None = None,
+    inner: Sequence[Surface] = (),
 ) -> tuple[np.ndarray, np.ndarray, MesherInfo]:
     """Fill a closed surface with tetrahedra; its vertices come first and its triangles are the boundary.
 
+    inner: closed surfaces within it, whose vertices come next and whose triangles are faces of tets on both sides;
     limits: from vertices and tets to the volumes (m,), mm^3, that those may have, None where they stay as they are.
     Returns (n, 3) float64 vertices, mm, and (m, 4) int64 tets of either orientation. Raises ToolError.
     """
-    options = OPTIONS
+    options, whole = OPTIONS, joined_surface([surface, *inner])
 
     def made(directory: Path, arguments: list[str], stem: str, seconds: float) -> tuple[np.ndarray, np.ndarray]:
         done = run(TETGEN, arguments, directory=directory, time_limit_s=seconds, memory_limit_bytes=memory_limit_bytes)
@@ -47,7 +49,7 @@ def fill(
         return read_tets(directory / stem)
 
     with workspace() as directory:
-        write_smesh(surface, directory / "surface.smesh")
+        write_smesh(whole, directory / "surface.smesh", surface)
         start = time.perf_counter()
         vertices, tets = made(
             directory, [OPTIONS + ("" if limits else "F"), "surface.smesh"], "surface.1", time_limit_s
@@ -70,8 +72,8 @@ def fill(
             options = f"{OPTIONS}, {switches}"
     if not len(tets):
         raise ToolError("tetgen: made no tetrahedra; the surface is not closed")
-    n = len(surface.vertices)
-    if len(vertices) < n or not np.array_equal(vertices[:n], surface.vertices):
+    n = len(whole.vertices)
+    if len(vertices) < n or not np.array_equal(vertices[:n], whole.vertices):
         raise ToolError(
             "tetgen: vertices of the surface were left out or moved, as where two nearly meet; merge or move such "
             "ones, or try --mesher cgal"

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
+
 import numpy as np
 
 from quadgraph.base.errors import InputError, ToolError
 from quadgraph.mesh.surface import Surface, TetMesh
-from quadgraph.tets import cgal_mesh, tetgen
+from quadgraph.tets import cgal_mesh, regions, tetgen
 from quadgraph.tets.interior import Limits
 from quadgraph.tets.tet_rounding import orient, round_to_float32
 
@@ -19,6 +22,7 @@ def tetrahedralise(
     surface: Surface,
     *,
     mesher: str = "tetgen",
+    inner: Sequence[Surface] = (),
     grading: float | None = None,
     limits: Limits | None = None,
     time_limit_s: float = DEFAULT_TIME_LIMIT_S,
@@ -27,9 +31,11 @@ def tetrahedralise(
     """Fill a closed, 2-manifold, outward-facing surface (mm) with positive tetrahedra.
 
     mesher "tetgen" keeps the surface as it is: its vertices are the first of the result and its triangles the
-    boundary. "cgal" makes its own surface near it, sized as in the QuadGraph paper by `grading` = K > 0 (larger K:
-    larger tetrahedra inside), and no edge above the smallest of `limits`. limits: how large tets may be inside, None
-    for what the surface makes. All determinants are positive in double precision with float32 vertices.
+    boundary; inner: closed surfaces (mm) within it, apart from each other, which tets meet with their faces and which
+    tell the regions of the result; with "tetgen" alone. "cgal" makes its own surface near it, sized as in the QuadGraph
+    paper by `grading` = K > 0 (larger K: larger tetrahedra inside), and no edge above the smallest of `limits`. limits:
+    how large tets may be inside, None for what the surface makes. All determinants are positive in double precision
+    with float32 vertices.
 
     Raises InputError for a bad option or surface, ToolError if the program is missing, fails or passes a limit.
     """
@@ -38,23 +44,30 @@ def tetrahedralise(
     if not surface.is_closed_manifold or surface.volume <= 0:
         raise InputError("tetrahedralise: the surface is not a closed, outward-facing 2-manifold; repair it first")
     if mesher == "tetgen":
-        return _with_tetgen(surface, grading, limits, time_limit_s, memory_limit_bytes)
+        return _with_tetgen(surface, inner, grading, limits, time_limit_s, memory_limit_bytes)
+    if len(inner):
+        raise InputError('mesher: "cgal" found with a body within another, allowed is "tetgen", which keeps surfaces')
     largest = None if limits is None else limits.interior.edge
     usual = DEFAULT_GRADING if grading is None else grading
     return _with_cgal(surface, usual, largest, time_limit_s, memory_limit_bytes)
 
 
 def _with_tetgen(
-    surface: Surface, grading: float | None, limits: Limits | None, time_limit_s: float, memory_limit_bytes: int
+    surface: Surface,
+    inner: Sequence[Surface],
+    grading: float | None,
+    limits: Limits | None,
+    time_limit_s: float,
+    memory_limit_bytes: int,
 ) -> TetMesh:
     if grading is not None:
         raise InputError('grading: an option of mesher "cgal"; "tetgen" has interior')
-    surface = surface.rounded()
-    vertices, tets, info = tetgen.fill(surface, time_limit_s, memory_limit_bytes, limits)
-    mesh = _positive(vertices, tets, len(surface.vertices), info)
+    surface, inner = surface.rounded(), [each.rounded() for each in inner]
+    vertices, tets, info = tetgen.fill(surface, time_limit_s, memory_limit_bytes, limits, inner)
+    mesh = _positive(vertices, tets, sum(len(each.vertices) for each in (surface, *inner)), info)
     if not np.array_equal(_canonical(mesh.boundary().triangles), _canonical(surface.triangles)):
         raise ToolError("tetgen: the boundary of the tetrahedra is not the given surface")
-    return mesh
+    return replace(mesh, regions=regions.of(mesh, len(surface.vertices), inner)) if inner else mesh
 
 
 def _with_cgal(

@@ -13,7 +13,7 @@ using namespace quadgraph;
 
 TEST_CASE("a material goes to the body that was chosen, or to all") {
   State state;
-  take_bodies(state, {"cup", "stone"});
+  take_bodies(state, {"cup", "stone"}, {0, 1});
   choose_material(state, "wax");
   CHECK(chosen_material(state) == "wax");
   state.body = "stone";
@@ -34,7 +34,7 @@ TEST_CASE("a click chooses a body and says so, one beside them all, and of one b
   State state;
   choose_body(state, 0);
   CHECK(state.message.empty());
-  take_bodies(state, {"cup", "stone"});
+  take_bodies(state, {"cup", "stone"}, {0, 1});
   choose_body(state, 1);
   CHECK(state.body == "stone");
   CHECK(state.message == "Body: stone");
@@ -70,10 +70,20 @@ TEST_CASE("the edge of a body goes around what it covers") {
 
 TEST_CASE("another file has other bodies") {
   State state;
-  take_bodies(state, {"cup", "stone"});
+  take_bodies(state, {"cup", "stone"}, {0, 1});
   state.body = "stone";
-  take_bodies(state, {"stone", "lid"});
+  take_bodies(state, {"stone", "lid"}, {0, 1});
   CHECK(state.body == "stone");
-  take_bodies(state, {});
+  take_bodies(state, {}, {});
   CHECK(state.body.empty());
+}
+
+TEST_CASE("a body within others moves with the outermost") {
+  State state;
+  take_bodies(state, {"core", "stone", "jelly"}, {2, 2, 2});
+  CHECK(moves_with(state).empty());
+  state.body = "core";
+  CHECK(moves_with(state) == "jelly");
+  state.body = "jelly";
+  CHECK(moves_with(state).empty());
 }

@@ -86,3 +86,19 @@ TEST_CASE("what lists of steps leave of a shape") {
   CHECK(only_moves(List{put(1), whole}));
   CHECK(!only_moves(List{put(1), twist}));
 }
+
+TEST_CASE("the outermost body takes along what lies within it, which does not move by itself") {
+  const QuadGraph graph = QuadGraph::load(QUADGRAPH_TEST_DATA "/nested_cubes.qgraph");
+  REQUIRE(graph.outermost() == std::vector<std::uint32_t>{1, 1});
+  const VertexBodies bodies = vertex_bodies(graph);
+  const BodyPose pose{.position = {4, 0, 0}, .rotation = {0, 90, 0}};
+  const std::vector<RigidMove> moves = rigid_moves(graph, bodies, {{"outer", pose}});
+  CHECK(moves[0] == moves[1]);
+  CHECK(glm::distance(moves[0].turn * glm::dvec3(1.5) + moves[0].shift, glm::dvec3(5.5, 1.5, 1.5)) < 1e-12);
+  CHECK_THROWS_WITH_AS(
+      rigid_moves(graph, bodies, {{"inner", pose}}),
+      "placements: inner found, which lies within outer and shares its surface with it: place outer, which takes inner "
+      "along, or bake it where it is to lie",
+      InputError);
+  CHECK(rigid_moves(graph, bodies, {{"inner", BodyPose()}}) == std::vector<RigidMove>(2));
+}

@@ -108,6 +108,9 @@ TEST_CASE("10,000 corruptions behind valid checksums are refused or harmless") {
   SUBCASE("of two bodies") {
     file = "two_cubes.qgraph";
   }
+  SUBCASE("of a body within another") {
+    file = "nested_cubes.qgraph";
+  }
   const Bytes whole = data_bytes(file);
   REQUIRE(accepted(whole));
   const std::size_t table_end = entry_offset(entries_present(whole));

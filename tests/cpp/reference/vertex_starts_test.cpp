@@ -3,6 +3,9 @@
 
 #include <doctest/doctest.h>
 
+#include <glm/common.hpp>
+
+#include "tests/cpp/fixtures/test_data.h"
 #include "tests/cpp/fixtures/test_levels.h"
 
 using namespace quadgraph;
@@ -82,4 +85,20 @@ TEST_CASE("reflecting walls are no way out") {
   }
   owned.face_kinds.assign(owned.faces.size(), face_reflecting);
   CHECK(vertex_starts(owned.view()).nearest.back() == level.vertex_count() - 1);
+}
+
+TEST_CASE("the nearest boundary is the surface or one that two bodies share") {
+  const QuadGraph graph = QuadGraph::load(test_data("nested_cubes.qgraph"));
+  const Level& level = graph.levels()[0];
+  const std::vector<std::uint32_t> nearest = nearest_boundary(level);
+  REQUIRE(nearest.size() == level.vertices.size());
+  std::size_t shared = 0;
+  for (std::uint32_t v = 0; v < level.vertex_count(); ++v) {
+    const glm::vec3 off = glm::abs(level.vertices[v] - glm::vec3(1.5f));
+    const bool of_inner = off == glm::vec3(0.5f);
+    shared += of_inner;
+    if (of_inner || v < level.surface_vertex_count) CHECK(nearest[v] == v);
+  }
+  CHECK(shared == 8);
+  CHECK(nearest_boundary(QuadGraph::load(test_data("two_cubes.qgraph")).levels()[0]).empty());
 }

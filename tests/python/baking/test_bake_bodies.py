@@ -11,11 +11,12 @@ from scipy.spatial.transform import Rotation
 from quadgraph.baking import kept, scene_bodies
 from quadgraph.baking.bodies import BodyMesh, bake_bodies, meshes_as_they_lie, parts_as_bodies
 from quadgraph.baking.pipeline import BakeOptions, bake
-from quadgraph.baking.placing import BodyPlacement, check_apart
+from quadgraph.baking.placing import BodyPlacement, hosts_of
 from quadgraph.base.errors import InputError
 from quadgraph.commands import scene_file
 from quadgraph.file import qgraph_file
 from quadgraph.mesh import named_parts
+from quadgraph.mesh.surface import Surface
 from shapes import cube, icosphere, join, moved, torus, write_obj
 
 _core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
@@ -95,28 +96,34 @@ REFUSED = {
     "cut each other": (cube(4.0), moved(cube(4.0), 3, 1, 1), "one and two cut or touch each other"),
     "touch in a face": (cube(4.0), moved(cube(4.0), 4, 0, 0), "one and two cut or touch each other"),
     "touch in a part of a face": (cube(4.0), moved(cube(2.0), 3, 0.1, 0.3), "one and two cut or touch each other"),
-    "inside": (cube(4.0), cube(1.0), "two lies within one, whose surface has no cavity"),
-    "around": (cube(1.0), cube(4.0), "one lies within two, whose surface has no cavity"),
+    "touch from inside": (cube(4.0), moved(cube(1.0), 1.5, 0, 0), "one and two cut or touch each other"),
+    "in part": (cube(4.0), join(cube(1.0), moved(cube(1.0), 6, 0, 0)), "1 of the 2 pieces of two lie within one"),
+    "around its cavity": (
+        join(cube(6.0), Surface(cube(2.0).vertices, cube(2.0).triangles[:, ::-1])),
+        cube(4.0),
+        "lie within each other in part, as where one is around a cavity",
+    ),
 }
 
 
 @pytest.mark.parametrize(("one", "two", "message"), REFUSED.values(), ids=REFUSED)
 def test_bodies_that_are_not_apart_are_refused_by_name(one, two, message):
     with pytest.raises(InputError, match=message):
-        check_apart([one, two], ["one", "two"])
+        hosts_of([one, two], ["one", "two"])
 
 
 def test_a_body_may_lie_in_a_cavity_or_in_a_hole():
     hollow = cube(4.0)
     hole = cube(2.0)
     inner = type(hole)(hole.vertices, hole.triangles[:, ::-1])
-    check_apart([join(hollow, inner), cube(1.0)], ["hollow", "stone"])
-    check_apart([torus(8.0, 2.0), icosphere(2, 3.0)], ["ring", "ball"])
+    assert hosts_of([join(hollow, inner), cube(1.0)], ["hollow", "stone"]) == [None, None]
+    assert hosts_of([torus(8.0, 2.0), icosphere(2, 3.0)], ["ring", "ball"]) == [None, None]
+    assert hosts_of([cube(1.0), cube(4.0), moved(cube(1.0), 9, 0, 0), cube(2.0)], list("abcd")) == [3, None, None, 1]
 
 
 def test_a_refused_bake_leaves_nothing(meshes, tmp_path):
-    placed = [BodyMesh("a", meshes["ball"], unit="mm"), BodyMesh("b", meshes["box"], unit="mm")]
-    with pytest.raises(InputError, match="b lies within a"):
+    placed = [BodyMesh("a", meshes["ball"], unit="mm"), BodyMesh("b", meshes["box"], BodyPlacement((4, 0, 0)), "mm")]
+    with pytest.raises(InputError, match="a and b cut or touch"):
         bake_bodies(placed, tmp_path / "two.qgraph", BakeOptions())
     with pytest.raises(InputError, match="'a' found twice"):
         bake_bodies([placed[0], placed[0]], tmp_path / "two.qgraph", BakeOptions())

@@ -70,7 +70,7 @@ function buildPlacement() {
 const poseOf = (scene) => ({ position: [0, 0, 0], rotation: [0, 0, 0], ...((scene.placements || {})[body] || {}) });
 
 function showPlacement(scene) {
-  $("placement").hidden = !body;
+  $("placement").hidden = !body || body in hello.hosts;  // what lies within another moves with it
   const pose = poseOf(scene);
   for (let k = 0; k < 3 && body; ++k) {
     put(`position-${k}`, pose.position[k], `${pose.position[k].toFixed(1)} mm`);
