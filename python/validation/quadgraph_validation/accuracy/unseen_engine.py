@@ -51,13 +51,13 @@ class UnseenAnswers:
 @dataclass(frozen=True)
 class UnseenSetting:
     """sweeps: a solve for each, None for the engine's own choice; device: as Engine takes it; motion: in frames, too;
-    carry: those without sweeps; for_material: bake for the case's own material.
+    carry: frames from one with sweeps to the next; for_material: bake for the case's own material.
     """
 
     sweeps: Sequence[int | None] = (None,)
     device: str = ""
     motion: bool = False
-    carry: bool = False
+    carry: int = 1
     for_material: bool = False
 
 
@@ -95,7 +95,7 @@ def _answer(engine: Engine, of_face: np.ndarray, sweeps: int | None, options: di
     return UnseenAnswer(sweeps, _by_patch(engine, of_face), printed, solution.model, seconds)
 
 
-def _moved(engine: Engine, case: UnseenCase, of_face: np.ndarray, carry: bool) -> UnseenMotion:
+def _moved(engine: Engine, case: UnseenCase, of_face: np.ndarray, carry: int) -> UnseenMotion:
     shown: list[UnseenMedium] = []
 
     def show(medium: UnseenMedium, light: Light) -> None:

@@ -20,7 +20,7 @@ FRAMES = 30
 TURN = 3.0  # degrees from one frame to the next, about the upright line through the body's middle
 EDIT = 0.3  # what the coefficients are above their own at first: they fall to these over the first half of the frames
 STILL = 60  # frames after that in which nothing changes: a second at 60 a second
-_TIMED = 5  # frames timed without the correction, and as many with it
+_TIMED = 8  # frames timed without the correction, and as many with it
 
 # Exitance of the present solution by patch, (n,) W/mm^2.
 Seen = Callable[[], np.ndarray]
@@ -45,25 +45,29 @@ class UnseenMotion:
 
 
 def moved(
-    engine: Engine, case: UnseenCase, show: Setter, seen: Seen, options: dict[str, Any], carry: bool
+    engine: Engine, case: UnseenCase, show: Setter, seen: Seen, options: dict[str, Any], carry: int
 ) -> UnseenMotion:
-    """Run the frames. show: sets material and light; options: of every solve; carry: frames without sweeps. Raises what
-    solves raise, and InputError for a case with a sky.
+    """Run the frames. show: sets material and light; options: of every solve; carry: frames from one with sweeps to the
+    next. Raises what solves raise, and InputError for a case with a sky.
     """
-    quick = options | {"correction": False, "carry": True} if carry else options
+
+    def quick(number: int) -> dict[str, Any]:
+        swept = (number + 1) % carry == 0
+        return options if swept else options | {"correction": False, "carry": True}
+
     show(*at_frame(case, -1))
     engine.solve(**options)
     times, segments = [], []
     before = now = np.empty(0)
     for frame in range(FRAMES):
         show(*at_frame(case, frame))
-        seconds, solution = _timed(engine, quick)
+        seconds, solution = _timed(engine, quick(frame))
         times.append(seconds)
         segments.append(0.0 if solution.correction is None else solution.correction.segments)
         before, now = now, seen()
     printed = stated(solution)
-    for _ in range(STILL):
-        engine.solve(motion=True, **quick)
+    for number in range(FRAMES, FRAMES + STILL):
+        engine.solve(motion=True, **quick(number))
     still = seen()
     exact = []
     for frame in (FRAMES - 2, FRAMES - 1):
@@ -74,7 +78,7 @@ def moved(
     for frame in range(FRAMES, FRAMES + _TIMED):
         show(*at_frame(case, frame))
         plain.append(_timed(engine, options | {"correction": False})[0])
-    usual = (float(np.median(values[-_TIMED:])) for values in (segments, times, plain))
+    usual = (float(np.mean(values[-_TIMED:])) for values in (segments, times, plain))
     return UnseenMotion(now, still, (now - before) - (exact[1] - exact[0]), printed, *usual)
 
 

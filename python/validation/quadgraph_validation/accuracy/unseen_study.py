@@ -34,8 +34,8 @@ class UnseenRun:
     """What is judged. count: of seeds from the first; walks: of the truth of each; truths: folder where these are kept;
     sweeps: what solves are asked for, None for the engine's own choice; device: as Engine takes it; lights: beams or
     sky; inter_reflection: in the engine and in the truth; motion: also in frames whose light and material change;
-    carry: those without sweeps; for_material: bake for the case's own material in place of for none; mean_free_paths:
-    least and most of them across a body's longest side.
+    carry: frames from one with sweeps to the next; for_material: bake for the case's own material in place of for none;
+    mean_free_paths: least and most of them across a body's longest side.
     """
 
     seed: int
@@ -47,7 +47,7 @@ class UnseenRun:
     lights: str = "beams"
     inter_reflection: bool = True
     motion: bool = False
-    carry: bool = False
+    carry: int = 1
     for_material: bool = False
     mean_free_paths: tuple[float, float] = unseen_cases.MEAN_FREE_PATHS
 
@@ -82,7 +82,7 @@ def check(wanted: UnseenRun) -> None:
     least, most = wanted.mean_free_paths
     if least > most:
         raise InputError(f"--mean-free-paths: {least:g} {most:g} found; give the smaller number first")
-    if wanted.carry and not wanted.motion:
+    if wanted.carry > 1 and not wanted.motion:
         raise InputError("--carry: without --motion, of whose frames it is; give both")
     if wanted.motion and wanted.lights != "beams":
         raise InputError(f"--motion: with --lights {wanted.lights}, which does not turn; take --lights beams")

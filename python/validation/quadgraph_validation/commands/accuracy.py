@@ -149,8 +149,11 @@ def _add_unseen_options(group: argparse._ArgumentGroup) -> None:
     )
     group.add_argument(
         "--carry",
-        action="store_true",
-        help="with --motion: frames have no sweeps, and carry on what the solve before them was corrected by",
+        type=positive_int,
+        metavar="N",
+        default=1,
+        help="with --motion: every Nth frame alone has sweeps, and others carry on what the last one with sweeps was "
+        "corrected by; more than 90 for none (default: %(default)s)",
     )
     group.add_argument(
         "--seconds",
