@@ -142,19 +142,7 @@ def _add_unseen_options(group: argparse._ArgumentGroup) -> None:
         action="store_false",
         help="leave out light that enters again, in the engine and in the truth",
     )
-    group.add_argument(
-        "--motion",
-        action="store_true",
-        help="also 30 frames in which the light turns by 3 degrees each and the material is edited",
-    )
-    group.add_argument(
-        "--carry",
-        type=positive_int,
-        metavar="N",
-        default=1,
-        help="with --motion: every Nth frame alone has sweeps, and others carry on what the last one with sweeps was "
-        "corrected by; more than 90 for none (default: %(default)s)",
-    )
+    _add_motion_options(group)
     group.add_argument(
         "--seconds",
         type=positive_float,
@@ -179,6 +167,22 @@ def _add_unseen_options(group: argparse._ArgumentGroup) -> None:
         action="append",
         metavar="N",
         help="of the transport correction; several allowed (default: the engine's own choice)",
+    )
+
+
+def _add_motion_options(group: argparse._ArgumentGroup) -> None:
+    group.add_argument(
+        "--motion",
+        action="store_true",
+        help="also 30 frames in which the light turns by 3 degrees each and the material is edited",
+    )
+    group.add_argument(
+        "--carry",
+        type=positive_int,
+        metavar="N",
+        default=1,
+        help="with --motion: every Nth frame alone has sweeps, and others carry on what the last one with sweeps was "
+        "corrected by; more than 90 for none (default: %(default)s)",
     )
 
 
