@@ -18,11 +18,25 @@ struct GroundLightPush {
 layout(push_constant, scalar) uniform Block { GroundLightPush push; };
 
 const float PI = 3.14159265;
+const float WIDER = 3.0;  // times as large as a patch a disc is
 
 vec3 middle_of(uint texel) {
   vec2 at = (vec2(texel % GROUND_LIGHT_SIZE, texel / GROUND_LIGHT_SIZE) + 0.5) / float(GROUND_LIGHT_SIZE);
   vec2 beside = push.half_width * (2.0 * at - 1.0);
   return push.middle + (push.z_up != 0u ? vec3(beside, 0.0) : vec3(beside.x, 0.0, beside.y));
+}
+
+// RGB of what a patch sends along a vector, and its own area along it.
+vec4 seen_along(GroundPatch part, vec3 along) {
+  return vec4(dot(part.red, along), dot(part.green, along), dot(part.blue, along), dot(part.facing, along));
+}
+
+// Share of the sky that a disc takes which lies parallel to the ground so far above it, its middle aside by the root of
+// `aside2`, mm^2; radius2: of it.
+float disc_factor(float aside2, float above, float radius2) {
+  float beyond = aside2 + above * above - radius2, wide = beyond + 2.0 * radius2;
+  float root = sqrt(max(wide * wide - 4.0 * radius2 * aside2, 1e-30));
+  return beyond > 0.0 ? 2.0 * radius2 * above * above / (root * (root + beyond)) : 0.5 * (1.0 - beyond / root);
 }
 
 void main() {
@@ -33,14 +47,16 @@ void main() {
   for (uint p = 0u; p < push.patch_count; ++p) {
     GroundPatch part = push.patches.at[p];
     vec3 from = point - part.place;
-    float above = push.z_up != 0u ? -from.z : -from.y;
+    vec3 down = push.z_up != 0u ? vec3(0.0, 0.0, -1.0) : vec3(0.0, -1.0, 0.0);
+    float above = dot(from, down);
     if (above <= 0.0) continue;
-    float far2 = dot(from, from);
-    // The inverse square law with both cosines; softened by half the area, so that what is nearer than a patch is wide
-    // does not show where its middle is (cf. the disc of Wallace 1989).
-    float share = above / (far2 * (PI * far2 + 0.5 * part.area));
-    sum += share * max(vec4(dot(part.red, from), dot(part.green, from), dot(part.blue, from),
-                            dot(part.facing, from)), vec4(0));
+    // What of it looks down is a disc, wider than it and as much weaker, so that discs leave no gaps; the rest a point: the
+    // inverse square law with both cosines, softened by half the area (cf. Wallace 1989).
+    vec3 aside = from - above * down;
+    float soft2 = dot(from, from) + 0.5 / PI * part.area, point_share = above / (PI * soft2 * soft2);
+    float facing = max(dot(part.facing, down), 1e-20);
+    float disc_share = disc_factor(dot(aside, aside), above, WIDER * facing / PI) / (WIDER * facing);
+    sum += max(disc_share * seen_along(part, down) + point_share * seen_along(part, aside), vec4(0));
   }
   push.light.at[i] = sum / max(sum.w, 1.0);
 }
