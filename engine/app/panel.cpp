@@ -19,7 +19,8 @@ namespace {
 std::string state_text(const Measured& measured) {
   if (measured.frame_ms == 0) return "the first picture is being made";
   const auto& error = measured.picture_error ? measured.picture_error : measured.solve.error;
-  const std::string off = error && measured.settled ? ", error " + percent(error->whole) : std::string();
+  const bool corrected = measured.solve.correction || measured.solve.carried;
+  const std::string off = error && (measured.settled || corrected) ? ", error " + percent(error->whole) : "";
   return (measured.settled ? "converged" : measured.frames > 0 ? "converging" : "preview") + off;
 }
 
