@@ -187,8 +187,8 @@ struct SolveOptions {
   // The error that a correction at rest states is that of the mean of so many solves, alike but for their seeds; 0: of
   // this one alone.
   std::uint32_t mean_of = 0;
-  double certify = 0;        // s: so long random walks measure what the corrected exitance is off by; 0: none do
-  bool guided_walks = true;  // these know where light matters, where that tells more in the time
+  double certify = 0;         // s: so long random walks measure what the corrected exitance is off by; 0: none do
+  bool guided_walks = false;  // these are led to where little light leaves
   // n > 0, with the links of a polygrid: on all levels but the coarsest only the first n layers of vertices below the
   // surface are solved for, the others keep what the coarser level has [PG Section 5.3, Fig. 8]; 0: all are.
   std::uint32_t active_layers = 0;

@@ -58,13 +58,13 @@ std::vector<std::uint32_t> bodies_of_vertices(const Level& level, const Nesting&
   for (std::size_t t = 0; t < level.tets.size(); ++t) {
     const std::uint32_t own = level.tet_bodies[t];
     for (int k = 0; k < 4; ++k) {
-      const std::string row = "row " + std::to_string(t) + ": ";
+      const char* wrong = nullptr;
       if (body[level.tets[t][k]] != nesting.around(own)) {
-        fail_format(file, of_level(index, "tets"), row + "shares a vertex with another body");
+        wrong = "shares a vertex with another body";
+      } else if (level.tets[t][k] < level.surface_vertex_count && own != nesting.around(own)) {
+        wrong = "of a body within another, has a vertex on the surface";
       }
-      if (level.tets[t][k] < level.surface_vertex_count && own != nesting.around(own)) {
-        fail_format(file, of_level(index, "tets"), row + "of a body within another, has a vertex on the surface");
-      }
+      if (wrong) fail_format(file, of_level(index, "tets"), "row " + std::to_string(t) + ": " + wrong);
     }
   }
   return body;

@@ -122,8 +122,8 @@ void add_light_paths(OptionTable& table) {
       {.name = "guided-walks",
        .member = "/solver/guided_walks",
        .keyword = "guided_walks",
-       .help =
-           "random walks of --certify are led to where little light leaves, where that tells more in the same time"});
+       .help = "random walks of --certify are led to where little light leaves, which tells more of some bodies and "
+               "less of others"});
   table.member<&Scene::solve, &SolveOptions::active_layers>(
       {.name = "active-layers",
        .member = "/solver/active_layers",

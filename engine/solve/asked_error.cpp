@@ -52,9 +52,11 @@ std::string advice(const SolveReport& report) {
   const double mesh = most(report.mesh_error), solver = most(report.algebraic), model = most(report.model_error);
   const double light = most(report.light_error), phase = most(report.phase_error);
   const std::string off = "the error is stated as " + percent_text(most(report.error)) + ", most of it ";
-  if (report.carried)
-    return off + "that of a correction which was of another light or material: at rest it is made anew";
-  if (!report.correction && mesh >= solver) return off + "the mesh's: a correction would take most of that away";
+  if (report.carried && model >= std::max(mesh, solver)) {
+    return off + "what a correction of another light or material leaves: at rest it is made anew";
+  }
+  if (!report.correction && !report.carried && mesh >= solver)
+    return off + "the mesh's: a correction would take most of that away";
   if (phase > std::max({mesh, solver, model, light})) {
     return off + "that of scattering forwards, of which sweeps know two moments alone: no option brings it down";
   }

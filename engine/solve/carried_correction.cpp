@@ -36,6 +36,8 @@ void CarriedCorrection::record_corrected(Workspace& work, const device::Buffer& 
 
 void CarriedCorrection::keep_error(const SolveReport& report) {
   error_ = report.error;
+  mesh_error_ = report.mesh_error;
+  model_error_ = report.model_error;
   changed_ = report.correction->changed;
 }
 
@@ -69,9 +71,10 @@ void CarriedCorrection::state(SolveReport& report, double material) const {
   report.carried = same;
   if (!error_) return;
   const auto left = [&](double known, double changed) { return std::hypot(known, (1 - same) * changed); };
-  report.model_error = by_parts(left, *error_, changed_);
-  const auto together = [](double model, double algebraic) { return std::hypot(model, algebraic); };
-  report.error = by_parts(together, *report.model_error, report.algebraic.value_or(ErrorEstimate{}));
+  const auto together = [](double all, double part) { return std::hypot(all, part); };
+  report.mesh_error = mesh_error_;
+  report.model_error = by_parts(left, model_error_.value_or(ErrorEstimate{}), changed_);
+  report.error = by_parts(left, by_parts(together, *error_, report.algebraic.value_or(ErrorEstimate{})), changed_);
 }
 
 }  // namespace quadgraph

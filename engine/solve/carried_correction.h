@@ -26,7 +26,10 @@ class CarriedCorrection {
 
   // What is known of the error of that, behind all that is stated of it.
   void keep_error(const SolveReport& report);
-  void forget() { key_.reset(); }
+  void forget() {
+    key_.reset();
+    error_.reset();
+  }
   bool knows(const OperatorKey& key) const { return key_ == key; }
 
   // Of a solve by the same key: exitance times the factor. `material`: share of the coefficients that are as they were.
@@ -37,10 +40,10 @@ class CarriedCorrection {
 
  private:
   std::optional<OperatorKey> key_;
-  std::optional<ErrorEstimate> error_;
-  ErrorEstimate changed_;                      // by the correction
-  device::Buffer solved_, corrected_, light_;  // vec3 per face, W/mm^2
-  device::Buffer overlap_, overlap_on_host_;   // vec3 of light_change.comp
+  std::optional<ErrorEstimate> error_, mesh_error_, model_error_;  // behind the correction
+  ErrorEstimate changed_;                                          // by it
+  device::Buffer solved_, corrected_, light_;                      // vec3 per face, W/mm^2
+  device::Buffer overlap_, overlap_on_host_;                       // vec3 of light_change.comp
 };
 
 }  // namespace quadgraph

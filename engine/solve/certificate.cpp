@@ -27,8 +27,6 @@ constexpr double fixed_walks = 2e4;     // of a round, where no time is given, o
 constexpr double fixed_segments = 1e7;  // so many tets together
 constexpr double longest_round = 0.4;   // s
 constexpr double most_walks = 1e7;      // of a round
-constexpr double least_to_try = 2;      // s, from which on it is tried whether guided walks pay,
-constexpr double share_tried = 0.1;     // for such a share of the time, as long as plain ones are
 constexpr double chance = 2;            // standard errors within which what was measured tells nothing
 constexpr double standard_errors = 3;   // from which on a difference is no chance
 
@@ -43,15 +41,6 @@ std::string against(const char* name, const CertifiedPart& part, double stated) 
   if (part.power_noise == 0 || least <= confidence * stated) return "";
   return std::string(name) + " by " + percent_text(std::max(std::abs(part.power), part.error)) + " where " +
          percent_text(stated) + " is stated";
-}
-
-// Whether the parts of the surface are told in less time by guided walks than by plain ones, on average.
-bool gains(const std::array<double, 3>& plain, const std::array<double, 3>& guided) {
-  double gain = 1;
-  for (std::size_t k = 0; k < plain.size(); ++k) {
-    if (plain[k] > 0 && guided[k] > 0) gain *= plain[k] / guided[k];
-  }
-  return gain > 1;
 }
 
 }  // namespace
@@ -140,30 +129,13 @@ Certifier::Made Certifier::measure(const CertifiedSolution& solution, const Task
   return made;
 }
 
-std::array<double, 3> Certifier::noise_by_time(const CertifiedSolution& solution, const Task& task) {
-  const Made made = measure(solution, task);
-  std::array<double, 3> found{};
-  const std::array parts = parts_of(solution, made);
-  for (std::size_t k = 0; k < parts.size(); ++k) found[k] = relative_variance(parts[k]) * made.seconds;
-  return found;
-}
-
 Certificate Certifier::run(const CertifiedSolution& solution, double seconds, std::uint32_t seed,
                            const std::function<void()>& check) {
-  const auto start = std::chrono::steady_clock::now();
-  bool guided = (seconds >= least_to_try || solution.trusted) && !solution.importance.empty();
-  double left = seconds;
+  const bool guided = !solution.importance.empty();
   if (guided) {
     device::write_bytes(solution.work.recorder.device(), importance_, std::as_bytes(solution.importance));
   }
-  if (guided && !solution.trusted) {
-    const double tried = share_tried * seconds;
-    const std::array plain = noise_by_time(solution, {false, tried, gpu::hash(seed + 1), check});
-    guided = gains(plain, noise_by_time(solution, {true, tried, gpu::hash(seed + 2), check}));
-    left = std::max(seconds - std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
-                    share_tried * seconds);
-  }
-  const Made made = measure(solution, {guided, left, seed, check});
+  const Made made = measure(solution, {guided, seconds, seed, check});
   const auto [whole, unlit, dimmest] = parts_of(solution, made);
   area_ = solution.surface.area;
   weight_ = made.weight;
@@ -176,7 +148,7 @@ Certificate Certifier::run(const CertifiedSolution& solution, double seconds, st
           .walks = made.walks,
           .segments = made.segments,
           .given_up = sum(made.given_up) / weight / std::max(sum(solution.entered), 1e-300),
-          .seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
+          .seconds = made.seconds,
           .guided = guided};
 }
 

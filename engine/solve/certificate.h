@@ -26,10 +26,8 @@ struct CertifiedSolution {
   gpu::Scale scale;             // of the light
   glm::dvec3 entered;           // W
   glm::vec3 g;                  // mean cosine of the angle by which light scatters
-  // Per vertex, as of importance.h, above zero: guides walks, where that tells more in the time; empty: none are
-  // guided.
-  std::span<const glm::vec3> importance;
-  bool trusted = false;  // it guides them without a trial
+  std::span<const glm::vec3>
+      importance;  // per vertex, as of importance.h, above zero: guides walks; empty: nothing does
 };
 
 class Certifier {
@@ -37,9 +35,8 @@ class Certifier {
   // `level`: the finest, whose faces stay what they are.
   Certifier(device::Device& device, const Level& level);
 
-  // Walks for about so long, from two seconds on guided where that tells more in the time; 0: a number of them that
-  // does not depend on the machine, and none are guided. `check` is called every half a second at the latest; what it
-  // throws ends it.
+  // Walks for about so long; 0: a number of them that does not depend on the machine. `check` is called every half a
+  // second at the latest; what it throws ends it.
   Certificate run(const CertifiedSolution& solution, double seconds, std::uint32_t seed,
                   const std::function<void()>& check);
 
@@ -67,8 +64,6 @@ class Certifier {
   void forget(Workspace& work);
   // Walks in rounds, behind one that tells how fast they are.
   Made measure(const CertifiedSolution& solution, const Task& task);
-  // Variance of what such walks tell of the parts, times the time; 0 where they tell nothing.
-  std::array<double, 3> noise_by_time(const CertifiedSolution& solution, const Task& task);
   // The whole surface, its unlit part and its dimmest third.
   std::array<PatchSums, 3> parts_of(const CertifiedSolution& solution, const Made& made) const;
 

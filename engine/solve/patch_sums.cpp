@@ -88,19 +88,4 @@ CertifiedPart certified(const PatchSums& part) {
           .error_noise = std::sqrt(std::max(square, 0.0) + spread) - error};
 }
 
-double relative_variance(const PatchSums& part) {
-  double variance = 0, size = 0;
-  for (const PatchSums::Patch& patch : part.patches) {
-    if (patch.area == 0) continue;
-    glm::dvec3 sum_of(0), squares(0);
-    for (const glm::dvec3& walked : patch.walked) {
-      sum_of += walked;
-      squares += walked * walked;
-    }
-    variance += sum(squares - sum_of * sum_of / double{walk_batches}) / (walk_batches - 1) / patch.area;
-    size += glm::dot(sum_of, sum_of) / walk_batches / patch.area;
-  }
-  return size > 0 ? variance / size : 0;
-}
-
 }  // namespace quadgraph

@@ -25,9 +25,6 @@ struct PatchSums {
 // How far the solution is off, as measured; zero where too few walks came there.
 CertifiedPart certified(const PatchSums& part);
 
-// Variance of the walks' means over patches, relative to their light; 0 where there is none.
-double relative_variance(const PatchSums& part);
-
 // The third of the surface whose patches send out least. By face it would be where the noise of the solution is low.
 std::vector<bool> dimmest_patches(const PatchSums& whole);
 

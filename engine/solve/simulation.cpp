@@ -169,8 +169,7 @@ void Simulation::certify(const SolveOptions& options, SolveReport& report, const
                          std::span<const glm::vec3> importance) {
   Implementation& self = *implementation_;
   std::vector<glm::vec3> own;
-  const bool trusted = !importance.empty();
-  if (options.certify > 0 && options.guided_walks && !trusted) {
+  if (options.certify > 0 && options.guided_walks && importance.empty()) {
     self.with_solution(self.correction_boundaries(), [&](const PerturbedSolution& solution) {
       own = importance_of(*self.perturbation, solution, present_level());
     });
@@ -185,8 +184,7 @@ void Simulation::certify(const SolveOptions& options, SolveReport& report, const
                                  .scale = device::download<gpu::Scale>(self.device, self.work.scale)[0],
                                  .entered = report.energy.entered,
                                  .g = self.coefficients.angles().g,
-                                 .importance = importance,
-                                 .trusted = trusted},
+                                 .importance = importance},
                                 options.certify, options.sweep_seed, check);
   self.certified = true;
   if (self.coefficients.angles().g != glm::vec3(0)) add_phase_error(report);

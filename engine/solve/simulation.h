@@ -146,8 +146,8 @@ class Simulation {
 
   // Random walks for options.certify seconds, or a number of them, after all else is said of the error in `report`, of
   // that solve. `check` as of `solve`.
-  // `importance`: per vertex of level 0, above zero, that guides them all, as light that enters meets 1 on average;
-  // empty: of the solution's own, where that pays (importance.h).
+  // `importance`: per vertex of level 0, above zero, that guides them, as light that enters meets 1 on average; empty:
+  // the solution's own, where options.guided_walks want one (importance.h).
   void certify(const SolveOptions& options, SolveReport& report, const std::function<void()>& check,
                std::span<const glm::vec3> importance = {});
 

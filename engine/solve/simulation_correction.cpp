@@ -59,16 +59,14 @@ CorrectedPatches Simulation::Implementation::measure_patches(const BodyBoundarie
   return patches;
 }
 
-double Simulation::Implementation::material_change() {
-  if (!optical_changed) return 0;
-  return std::max(extinction_change(corrected_optical, optical_at(0)), index_change(corrected_eta, refractions.eta()));
+double Simulation::Implementation::material_change(std::span<const gpu::Optical> now) const {
+  return std::max(extinction_change(corrected_optical, now), index_change(corrected_eta, refractions.eta()));
 }
 
 void Simulation::Implementation::forget_other_material() {
   if (!optical_changed) return;
   std::vector<gpu::Optical> now = optical_at(0);
-  const bool another = std::max(extinction_change(corrected_optical, now),
-                                index_change(corrected_eta, refractions.eta())) > most_carried;
+  const bool another = material_change(now) > most_carried;
   another || goes_forward() || corrected_g != coefficients.angles().g ? correction->forget() : correction->edited();
   corrected_optical = std::move(now);
   corrected_g = coefficients.angles().g;
@@ -120,7 +118,7 @@ void Simulation::Implementation::correct(const OperatorKey& key, const SolveOpti
 
 void Simulation::Implementation::carry(const OperatorKey& key, const SolveOptions& options, SolveReport& report) {
   if (!carried || !carried->knows(key)) return;
-  const double material = std::max(0.0, 1 - material_change());
+  const double material = optical_changed ? std::max(0.0, 1 - material_change(optical_at(0))) : 1;
   carried->record(work, levels[0], results.exitance(), material);
   results.record_shown(
       work, {levels[0], operators.at(key, 0), key.method, refractions.boundaries(key.method, options.source, key.model),

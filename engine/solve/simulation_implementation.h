@@ -149,6 +149,7 @@ struct Simulation::Implementation {
     for (std::uint32_t i = 0; i < levels.size(); ++i) walks.emplace_back(device, shape.levels()[i], i);
     correction.reset();
     carried.reset();
+    certified = false;
     perturbation.reset();
     light_error.reset();
     gather.reset();
@@ -241,8 +242,8 @@ struct Simulation::Implementation {
   // What the last correction found, where it was of such a solve.
   void carry(const OperatorKey& key, const SolveOptions& options, SolveReport& report);
 
-  // Of the coefficients since the last correction, a share.
-  double material_change();
+  // Of the coefficients since the last correction, a share; now: those at the surface.
+  double material_change(std::span<const gpu::Optical> now) const;
 
   // Of the last solution.
   FirstMoment fluence() {

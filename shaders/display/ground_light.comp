@@ -43,15 +43,15 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= GROUND_LIGHT_SIZE * GROUND_LIGHT_SIZE) return;
   vec3 point = middle_of(i);
+  vec3 down = push.z_up != 0u ? vec3(0.0, 0.0, -1.0) : vec3(0.0, -1.0, 0.0);
   vec4 sum = vec4(0);
   for (uint p = 0u; p < push.patch_count; ++p) {
     GroundPatch part = push.patches.at[p];
     vec3 from = point - part.place;
-    vec3 down = push.z_up != 0u ? vec3(0.0, 0.0, -1.0) : vec3(0.0, -1.0, 0.0);
     float above = dot(from, down);
     if (above <= 0.0) continue;
-    // What of it looks down is a disc, wider than it and as much weaker, so that discs leave no gaps; the rest a point: the
-    // inverse square law with both cosines, softened by half the area (cf. Wallace 1989).
+    // What of it looks down is a disc, wider than it and as much weaker, so that discs leave no gaps; the rest a point:
+    // the inverse square law with both cosines, softened by half the area (cf. Wallace 1989).
     vec3 aside = from - above * down;
     float soft2 = dot(from, from) + 0.5 / PI * part.area, point_share = above / (PI * soft2 * soft2);
     float facing = max(dot(part.facing, down), 1e-20);

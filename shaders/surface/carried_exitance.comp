@@ -4,16 +4,16 @@
 #include "shared/stride.glsl"
 
 // What leaves the faces, times what a correction before made of it there: of faces whose light is another now, and of
-// all where most of the light is, less of that.
+// all faces where less than half of the light is that of before, less of that.
 struct CarriedExitancePush {
-  Vec3s exitance;   // W/mm^2, of the solve; then times the factor
-  Vec3s solved;     // W/mm^2, of the solve before, and what it was corrected to
+  Vec3s exitance;  // W/mm^2, of the solve; then times the factor
+  Vec3s solved;    // W/mm^2, of the solve before, and what it was corrected to
   Vec3s corrected;
-  Vec3s q;          // W/mm^2
-  Vec3s q_before;   // W/mm^2
-  Vec3s overlap;     // of light_change.comp
+  Vec3s q;         // W/mm^2
+  Vec3s q_before;  // W/mm^2
+  Vec3s overlap;   // of light_change.comp
   uint count;
-  float same;       // share of the material that is as it was before
+  float same;  // share of the material that is as it was before
 };
 layout(push_constant, scalar) uniform Block { CarriedExitancePush push; };
 

@@ -11,7 +11,7 @@ struct LightChangePush {
   Uvec3s faces;
   Vec3s q;         // W/mm^2
   Vec3s q_before;  // W/mm^2
-  Vec3s overlap;    // one, written: area integrals of the light that both have, of what either has (channels together), and of 1
+  Vec3s overlap;   // one, written: over the area, of the light that both have, of what either has, channels together; area
   Reduction reduction;
   uint count;
 };

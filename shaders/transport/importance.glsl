@@ -26,7 +26,8 @@ vec4 importance_at_corners(uint tet, uint channel) {
 }
 
 // Of two directions that are as likely, by chance the one that leads to more, as P1 has the importance of directions:
-// I + grad I / sigma_tr. sigma: of scattering and absorption, 1/mm. Returns by how much its light counts more than that of the other.
+// I + grad I / sigma_tr. sigma: of scattering and absorption, 1/mm. Returns what its light counts with, so that the mean
+// stays what it is.
 float turn_to_more(TetPoint at, vec3 from, uint channel, float g, vec2 sigma, inout vec3 direction,
                    inout uint state) {
   vec3 other = g == 0.0 ? -direction : 2.0 * dot(direction, from) * from - direction;

@@ -32,9 +32,8 @@ class SolveOptions(TypedDict, total=False):
     many as it takes; max_iterations: per level; inter_reflection: whether it is computed; bounces: of that, 0 until
     nothing changes; correction: by sweeps of the transport equation; sweeps: how many, 0 until another one would change
     little; sweep_points: where one evaluates it at a time; sweep_seed: what these are drawn by; certify: seconds in
-    which random walks measure the error, 0 for none; guided_walks: whether these may be led by importance;
-    active_layers: of a polygrid, 0 for all; path: of the method
-    shortest-path.
+    which random walks measure the error, 0 for none; guided_walks: whether these are led by importance;
+    active_layers: of a polygrid, 0 for all; path: of the method shortest-path.
     """
 
     method: Method

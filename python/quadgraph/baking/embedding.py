@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from quadgraph.baking.placing import hosts_of
+from quadgraph.baking.surface_changes import Refined
 from quadgraph.base.errors import InputError
 from quadgraph.base.progress import ProgressCallback
 from quadgraph.mesh import lod, subdivide
@@ -96,13 +97,14 @@ class Nest:
             found.append(coarse)
         return found, [f"the chain ends after level {len(found) - 1}: {ended}", *notes]
 
-    def takes(self, outer: Surface) -> bool:
-        """Make a finer outer surface the finest, unless those within would cross it; say whether it is."""
+    def take(self, finer: Refined) -> list[str]:
+        """Make a finer outer surface the finest, unless those within would cross it; notes for the report."""
         inner = self.finest.inner
-        if inner and not self._lie_right([outer, *inner]):
-            return False
-        self.finest = LevelSurfaces(outer, inner)
-        return True
+        if inner and finer.cuts and not self._lie_right([finer.surface, *inner]):
+            return ["surface: triangles stay as they are where the material changes within them, as smaller ones "
+                    "would cross bodies within"]  # fmt: skip
+        self.finest = LevelSurfaces(finer.surface, inner)
+        return [finer.note] if finer.note else []
 
     def _level(
         self, outer: Sequence[Surface], within: Sequence[Sequence[Surface]], number: int

@@ -271,8 +271,7 @@ def make_levels(
         sizes = inside.sizes_of(nest.finest.outer, options.interior, options.for_materials, options.mesher)
         with report.timed("surface"):
             cut = surface_changes.refined(nest.finest.outer, options.for_materials, options.mesher)
-            if nest.takes(cut.surface) and cut.note:
-                report.notes.append(cut.note)
+            report.notes += nest.take(cut)
         # The finest level takes longest: its tets are made while the chain below it is.
         jobs = [submit(_make_level, nest.finest, options, sizes, 0)]
         with report.timed("simplify"):

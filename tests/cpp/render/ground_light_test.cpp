@@ -76,6 +76,28 @@ TEST_CASE("the ground within reach gets the power that goes there: half of a bal
   CHECK(power == doctest::Approx(2 * std::numbers::pi * radius * radius * within).epsilon(0.01));
 }
 
+TEST_CASE("under a plate that is nearer than its parts are wide there are no holes between these") {
+  // 40 mm wide, 0.4 mm above: parts are a millimetre wide, some of them two. Its upper side is not seen.
+  Shape plate;
+  constexpr int cells = 40;
+  for (int i = 0; i <= cells; ++i) {
+    for (int k = 0; k <= cells; ++k) {
+      plate.vertices.emplace_back(i - 0.5f * cells, 0.4f, k - 0.5f * cells);
+      if (i == cells || k == cells) continue;
+      const auto at = static_cast<std::uint32_t>((cells + 1) * i + k), across = at + cells + 1;
+      plate.faces.emplace_back(at, across, across + 1);
+      plate.faces.emplace_back(at, across + 1, at + 1);
+    }
+  }
+  const GroundPart part{.middle = {0, 0, 0}, .half_width = 30};
+  const auto light = lit(plate, glm::vec3(1), part);
+  for (std::uint32_t i = 0; i < light.size(); ++i) {
+    if (far_of(i, part) > 15) continue;
+    CHECK(light[i].w > 0.4f);
+    CHECK(light[i].w < 1.0001f);
+  }
+}
+
 TEST_CASE("no ground gets more than its whole sky") {
   const auto light = lit(sphere({0, 10.001f, 0}, 10, 4), glm::vec3(1), {.middle = {0, 0, 0}, .half_width = 3});
   float most = 0;

@@ -59,6 +59,7 @@ def test_it_is_nearer_than_no_correction_and_its_error_says_how_near(engine, deg
     assert left < share * uncorrected
     assert 0 < solution.carried < 1
     assert solution.correction is None
+    assert solution.error.whole >= solution.model_error.whole > 0
     assert solution.error.whole > 0.5 * left
 
 
