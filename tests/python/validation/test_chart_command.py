@@ -44,7 +44,7 @@ def small(tmp_path, monkeypatch):
     """The scene `sphere` on a small chain, under a truth that nobody has to make."""
     path = write_levels(tmp_path / "sphere.qgraph", [icosphere(3, 10), icosphere(2, 10)])
 
-    def subject(scene, where, against, wanted, working, device, pixels):
+    def subject(scene, where, against, wanted, working, device, pixels, tell):
         body = ChartBody(scene, path, working, device, pixels)
         pde = {(model, source): KnownTruth() for model in ("sp3", "diffusion") for source in ("buried", "diffuse")}
         return body, ChartJudge(body, pde, {}), [replace(method) for method in METHODS]

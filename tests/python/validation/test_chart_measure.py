@@ -65,6 +65,7 @@ class Told:
             "level": 1,
             "inter_reflection": False,
             "bake": "chain",
+            "radiance": "told",
             "runs_on": "paper",
         }
 
@@ -269,7 +270,7 @@ def test_methods_take_turns_and_one_that_fails_is_told_and_left_out(body):
     assert told["points"][1]["failed"] == "it does not converge"
     assert told["points"][0]["ms"] == 11.5
     assert told["points"][0]["stages"]["solve"] == 10
-    assert told["points"][0]["errors"] == {"pde": {"whole": 1.5}, "transport": None}
+    assert told["points"][0]["errors"] == {"pde": {"whole": 1.5}, "transport": None, "walks": None}
     assert [panel.errors for panel in records.panels(told)] == [[1.5, 1.5]]
 
 

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from baked import write_levels
+from quadgraph.base.errors import ToolError
 from quadgraph.mesh.surface import Surface
 from quadgraph_validation.bodies import scenes
 from quadgraph_validation.bodies.media import Medium
@@ -21,7 +22,7 @@ from quadgraph_validation.chart.chart_method import MethodChain, pde_of
 from quadgraph_validation.chart.chart_record import KINDS, kind
 from quadgraph_validation.chart.engine_methods import EngineMethod
 from quadgraph_validation.chart.traced_method import CUT, TracedMethod, traced_methods
-from quadgraph_validation.truth import half_space_orders, monte_carlo, path_tracing
+from quadgraph_validation.truth import blocks, half_space_orders, monte_carlo, path_tracing
 from quadgraph_validation.truth.fresnel import transmittance_from_outside
 from quadgraph_validation.truth.path_tracing import PathEnds
 from quadgraph_validation.truth.truth_run import TracedSubject
@@ -110,11 +111,34 @@ def test_what_path_tracing_says_of_itself():
     found = list(traced_methods(MethodChain((900,), None, original=True)))
     assert len({method.name for method in found}) == len(found)
     assert {method.most for method in found} == {None, 15}
-    assert found[-1].name == "path tracing, 15 scatterings at most · 16 samples a pixel"
+    assert found[-2].name == "path tracing, 15 scatterings at most · 16 samples a pixel"
+    assert found[-1].name == "path tracing · 16 samples a pixel · llvm_ad_rgb"
     for method in found:
         assert pde_of(method.settings) is None
         assert kind({"name": method.name, "settings": method.settings}) in KINDS
-    assert [method.moves for method in found] == [True, True, False] * 2
+    assert [method.moves for method in found] == [*[True, True, False] * 2, False]
+
+
+def test_both_variants_trace_the_same_picture(body):
+    """By other random numbers: their means differ by noise alone, and a variant that is not there is told."""
+    mitsuba_there()
+    missing = TracedMethod(4, variant="cuda_no_such")
+    with pytest.raises(ToolError, match="variant cuda_no_such"):
+        missing.prepare(body)
+    shown = []
+    for variant in (path_tracing.SCALAR, path_tracing.COMPILED):
+        method = TracedMethod(64, variant=variant)
+        try:
+            method.prepare(body)
+        except ToolError as error:
+            pytest.skip(str(error))
+        assert method.frame(0)["path tracing"] > 0
+        shown.append(method.picture("A")[..., 0])
+    means = np.array([blocks.means(picture)[blocks.covered(body.coverage("A"))] for picture in shown])
+    noise = np.sqrt(((means[0] - means[1]) ** 2).mean()) / means.mean()
+    print(f"blocks differ by {noise:.1%}, means by {means[0].mean() / means[1].mean() - 1:+.2%}")
+    assert means[0].mean() == pytest.approx(means[1].mean(), rel=4 * noise / np.sqrt(means.shape[1]))
+    assert 0 < noise < 0.5
 
 
 def test_without_mitsuba_the_chart_goes_on_without_it(body, monkeypatch):

@@ -130,6 +130,13 @@ class ChartBody:
         return [{name: entry[name] for name in names} for entry in file.metadata["levels"]]
 
     @cached_property
+    def default_surface(self) -> Surface:
+        """The finest level's, as `bake` makes it by default. Raises KeyError where that is not among `others`."""
+        sections = qgraph_file.read(self.others[Choice()].made()).sections
+        vertices, triangles = (sections[f"level0/{name}"] for name in ("vertices", "faces"))
+        return Surface(vertices.astype(np.float64), triangles.astype(np.int64))
+
+    @cached_property
     def display(self) -> Surface:
         """The mesh that pictures show."""
         vertices, triangles = (self.file.sections[f"display/{name}"] for name in ("vertices", "triangles"))

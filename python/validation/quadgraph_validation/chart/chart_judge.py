@@ -11,9 +11,10 @@ import numpy as np
 
 from quadgraph.baking.budget import surface_errors
 from quadgraph_validation.chart.chart_body import ChartBody
-from quadgraph_validation.chart.chart_method import ChartMethod, pde_of
+from quadgraph_validation.chart.chart_method import ChartMethod, pde_of, walks_judge
 from quadgraph_validation.truth import blocks
 from quadgraph_validation.truth.pde_truth import PdeTruth
+from quadgraph_validation.truth.scene_walks import SceneWalks
 from quadgraph_validation.truth.stored_truth import StoredTruth
 
 _FEW = 10  # blocks: fewer are no part
@@ -24,7 +25,8 @@ PdeTruths = Mapping[tuple[str, str], PdeTruth]
 
 @dataclass
 class ChartJudge:
-    """One scene's truths: of each PDE, and path-traced by name of Scene.images.
+    """One scene's truths: of each PDE, path-traced by name of Scene.images, and random walks through the surface of the
+    default bake, None without.
 
     What no PDE truth can judge is judged by transport alone.
     """
@@ -32,6 +34,7 @@ class ChartJudge:
     body: ChartBody
     pde: PdeTruths
     images: Mapping[str, StoredTruth]
+    walks: SceneWalks | None = None
 
     def errors(self, method: ChartMethod, pictures: Mapping[str, np.ndarray]) -> dict[str, dict[str, float] | None]:
         """Relative RMS errors by truth and part, those of too small a part left out; None where a truth cannot tell.
@@ -43,6 +46,7 @@ class ChartJudge:
         return {
             "pde": truth.error(method.settings["level"], method.exitance()) if truth else None,
             "transport": self._of_pictures(pictures),
+            "walks": self._by_walks(method),
         }
 
     def of_picture(self, name: str, pictures: Mapping[str, np.ndarray]) -> np.ndarray:
@@ -51,19 +55,25 @@ class ChartJudge:
         return pictures[image.view][..., image.channel]
 
     def noise(self) -> dict[str, dict[str, Any]]:
-        """Noise of the truths: by PDE and part, and of path tracing by part with the number of blocks."""
+        """Noise of the truths: by PDE and part, of path tracing by part with the number of blocks, and of walks."""
         found = {part: self._deviation(self._true, chosen) for part, chosen in self._parts.items()}
         return {
             "pde": {", ".join(equations): truth.noise for equations, truth in self.pde.items()},
             "transport": {part: deviation.noise for part, deviation in found.items()},
+            "walks": self.walks.noise if self.walks else {},
             "blocks": {part: deviation.blocks for part, deviation in found.items()},
         }
 
     def _of_pictures(self, pictures: Mapping[str, np.ndarray]) -> dict[str, float] | None:
-        if not self.images:
+        if not (self.images and pictures):
             return None
         found = np.vstack([self.of_picture(name, pictures) for name in self.images])
         return {part: self._deviation(found, chosen).rms for part, chosen in self._parts.items()}
+
+    def _by_walks(self, method: ChartMethod) -> dict[str, float] | None:
+        if self.walks is None or not walks_judge(method.settings):
+            return None
+        return self.walks.errors(method.exitance())
 
     def _deviation(self, found: np.ndarray, chosen: np.ndarray) -> blocks.Deviation:
         return blocks.deviation(found, self._true, self._error, chosen)

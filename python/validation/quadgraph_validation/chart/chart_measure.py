@@ -14,7 +14,15 @@ from quadgraph.base.progress import ProgressCallback
 from quadgraph_validation.chart import motion_measure
 from quadgraph_validation.chart.chart_body import MOTION_DEGREES, STEP_DEGREES, STEP_SHARE, ChartBody
 from quadgraph_validation.chart.chart_judge import ChartJudge
-from quadgraph_validation.chart.chart_method import SETTLED, SWING, ChartMethod, MovingMethod, bake_settings
+from quadgraph_validation.chart.chart_method import (
+    SETTLED,
+    SWING,
+    ChartMethod,
+    ClockedMethod,
+    MovingMethod,
+    StatingMethod,
+    bake_settings,
+)
 from quadgraph_validation.chart.motion_measure import MotionCourse
 from quadgraph_validation.truth.path_tracing import BATCH
 
@@ -26,20 +34,24 @@ STAGES = {
     "picture": (
         *("gather points", "uncollided", "gathered exitance", "gather scale", "surface", "resolve", "gather"),
         "path tracing",
+        "converging picture",
     ),
 }
 
 
 @dataclass
 class ChartPoint:
-    """A method, the passes of all its frames in ms, its errors and pictures, how steady it is in motion (None: not
-    judged so), or why there are none.
+    """A method, the passes of all its frames in ms, processor seconds of those that say them, its errors and pictures,
+    what it states of these itself (None: nothing), how steady it is in motion (None: not judged so), or why there are
+    none.
     """
 
     method: ChartMethod
     frames: list[dict[str, float]] = field(default_factory=list)
+    processor: list[float] = field(default_factory=list)
     errors: dict[str, dict[str, float] | None] = field(default_factory=dict)
     pictures: dict[str, np.ndarray] = field(default_factory=dict)
+    stated: dict[str, Any] | None = None
     motion: dict[str, Any] | None = None
     failed: str = ""
 
@@ -53,9 +65,11 @@ class ChartPoint:
         return told | {
             "ms": round(median(whole), 4),
             "ms_range": [round(min(whole), 4), round(max(whole), 4)],
+            "processor_s": round(median(self.processor), 4) if self.processor else None,
             "stages": {name: round(ms, 4) for name, ms in stages(passes).items()},
             "passes": {name: round(ms, 4) for name, ms in passes.items()},
             "errors": self.errors,
+            "stated": self.stated,
             "motion": self.motion,
         }
 
@@ -103,10 +117,14 @@ def _in_motion(body: ChartBody, points: Sequence[ChartPoint], tell: ProgressCall
 def _round(body: ChartBody, judge: ChartJudge, point: ChartPoint) -> None:
     try:
         point.method.prepare(body)
-        point.frames += [point.method.frame(step) for step in SWING[1:]]
+        for step in SWING[1:]:
+            point.frames.append(point.method.frame(step))
+            point.processor += [point.method.processor_seconds] if isinstance(point.method, ClockedMethod) else []
         if not point.errors:
-            point.pictures = {view: point.method.picture(view) for view in body.scene.views}
+            shown = body.scene.views if point.method.settings["radiance"] else ()
+            point.pictures = {view: point.method.picture(view) for view in shown}
             point.errors = judge.errors(point.method, point.pictures)
+            point.stated = point.method.stated() if isinstance(point.method, StatingMethod) else None
     except (SolverError, ToolError) as error:
         point.failed = str(error)
 

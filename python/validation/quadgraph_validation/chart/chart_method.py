@@ -39,13 +39,21 @@ def pde_of(settings: Mapping[str, Any]) -> tuple[str, str] | None:
     return settings["model"], settings["source"]
 
 
+def walks_judge(settings: Mapping[str, Any]) -> bool:
+    """Whether random walks through the surface of the default bake can judge the exitance of a method: one on that
+    surface, which follows light that left and enters again. A picture that is the mean of several solves has none.
+    """
+    return settings["bake"] == "default" and settings["inter_reflection"] and not settings.get("converge")
+
+
 class ChartMethod(Protocol):
     """One way to answer a scene; one point of the chart.
 
     family: what it is a setting of, for colour and filter; settings: everything it depends on, ready for JSON, of which
     `model` and `source` name the PDE that it solves, `level` the level whose surface it answers on, `bake` of which
-    chain, with `K` if it is the paper's, `inter_reflection` whether it computes inter-reflection, `runs_on` what its
-    times are of, and `sweeps`, where there are any, how many of the transport equation correct it.
+    chain, with `K` if it is the paper's, `inter_reflection` whether it computes inter-reflection, `radiance` how it
+    leaves the surface, None of what makes no pictures, `runs_on` what its times are of, and `sweeps`, where there are
+    any, how many of the transport equation correct it.
     """
 
     @property
@@ -68,11 +76,30 @@ class ChartMethod(Protocol):
 
     def exitance(self) -> np.ndarray:
         """Exitance of scattered light after the last frame per face of the level, (n_f, 3) W/mm^2; asked of those alone
-        that a PDE truth can judge.
+        that a PDE truth or random walks can judge.
         """
 
     def picture(self, view: str) -> np.ndarray:
         """Radiance of light that was in the body, (PIXELS, PIXELS, 3) W/(mm^2 sr), after the last frame."""
+
+
+@runtime_checkable
+class ClockedMethod(ChartMethod, Protocol):
+    """One whose frames are timed by the clock on the wall, which other programs slow down, and by the processor."""
+
+    @property
+    def processor_seconds(self) -> float:
+        """That the last frame took of the processor, over all threads."""
+
+
+@runtime_checkable
+class StatingMethod(ChartMethod, Protocol):
+    """One that says how far off its own pictures are."""
+
+    def stated(self) -> dict[str, Any]:
+        """Of all views that were shown since `prepare`, ready for JSON. whole: relative RMS error that it states of the
+        pictures together; views: by name what else it says of each.
+        """
 
 
 @runtime_checkable

@@ -100,9 +100,13 @@ def _figure(plotly: Any, record: dict[str, Any], scene: dict[str, Any]) -> Any:
 def _family(plotly: Any, panel: Panel, family: str, colour: str, in_legend: bool) -> Any:
     chosen = [i for i, point in enumerate(panel.points) if point["family"] == family]
     points = [panel.points[i] for i in chosen]
+    beyond = [panel.stated[i] - panel.errors[i] for i in chosen]
     return plotly.Scatter(
         x=[panel.times[i] for i in chosen],
         y=[panel.errors[i] for i in chosen],
+        error_y={"array": [max(b, 0.0) for b in beyond], "arrayminus": [max(-b, 0.0) for b in beyond], "width": 3}
+        if any(beyond)
+        else None,
         mode="markers",
         name=family,
         legendgroup=family,
@@ -136,10 +140,13 @@ def _hover(point: dict[str, Any], best: bool) -> str:
     low, high = point["ms_range"]
     lines = [f"<b>{point['name']}</b>", f"{point['ms']:.4g} ms ({low:.4g} to {high:.4g})"]
     lines.append(", ".join(f"{stage} {ms:.3g}" for stage, ms in point["stages"].items() if ms))
-    for truth, words in (("pde", "PDE truth"), ("transport", "path tracing")):
-        errors = point["errors"][truth]
-        if errors:
+    for truth, words in (("pde", "PDE truth"), ("transport", "path tracing"), ("walks", "random walks")):
+        if errors := records.errors_of(point, truth):
             lines.append(f"{words}: " + ", ".join(f"{name} {100 * error:.3g}%" for name, error in errors.items()))
+    if (stated := records.stated(point)) is not None:
+        views = point["stated"]["views"].items()
+        solves = ", ".join(f"{view}: {told['solves']} solves of {told['sweeps']} sweeps" for view, told in views)
+        lines.append(f"states {100 * stated:.3g}% of its pictures itself ({solves})")
     if flicker := records.flicker_text(point):
         lines.append(f"in motion: flicker {flicker}, frames behind light / camera {records.lag_text(point)}")
     lines.append(f"runs on: {point['settings']['runs_on']}")

@@ -13,7 +13,12 @@ from quadgraph_validation.chart.pareto import front
 
 FORMAT = 3
 PARTS = ("whole", "unlit")
-TRUTHS = {"pde": "PDE truth: error of mesh and solver", "transport": "path tracing: error of the picture"}
+TRUTHS = {
+    "pde": "PDE truth: error of mesh and solver",
+    "transport": "path tracing: error of the picture",
+    "walks": "random walks: error of the exitance of patches",
+}
+_OF_EXITANCE = ("pde", "walks")  # truths that no picture enters
 MOTION = "motion"  # in place of a truth, for what flickers
 _NEEDED = ("format", "scenes")
 
@@ -23,8 +28,8 @@ class Panel:
     """The points of a scene that have an error against one truth over one part, by time, and which make the front; or
     flicker in motion, beside no truth.
 
-    times: ms of a frame, for the PDE truth without its picture, which does not enter; noise: of the truth, relative;
-    the largest of the PDE truths'.
+    times: ms of a frame, for truths of the exitance without its picture, which does not enter; noise: of the truth,
+    relative; the largest of the PDE truths'.
     """
 
     truth: str
@@ -43,9 +48,16 @@ class Panel:
         return f"{TRUTHS[self.truth]}, {'whole' if self.part == 'whole' else 'unlit part'}"
 
     @property
+    def stated(self) -> list[float]:
+        """Of each point the error that it states itself, its error here where it states none of what is shown."""
+        shown = self.truth == "transport" and self.part == PARTS[0]
+        told = (stated(point) if shown else None for point in self.points)
+        return [error if own is None else own for own, error in zip(told, self.errors, strict=True)]
+
+    @property
     def time_words(self) -> str:
         """What the times are of."""
-        return "ms a frame without its picture" if self.truth == "pde" else "ms a frame"
+        return "ms a frame without its picture" if self.truth in _OF_EXITANCE else "ms a frame"
 
 
 def panels(scene: dict[str, Any]) -> list[Panel]:
@@ -64,20 +76,30 @@ def _flicker_panel(scene: dict[str, Any]) -> Panel:
 
 def _panel(scene: dict[str, Any], truth: str, part: str) -> Panel:
     done = [point for point in scene["points"] if not point.get("failed")]
-    if truth == "pde":
+    if truth in _OF_EXITANCE:
         done = [point for point in done if kind(point) != "lambertian"]
-    points = [point for point in done if part in (point["errors"][truth] or {})]
+    points = [point for point in done if part in errors_of(point, truth)]
     points = sorted(points, key=lambda point: _time(point, truth))
     times = [_time(point, truth) for point in points]
-    errors = [point["errors"][truth][part] for point in points]
-    noise = scene["truth"][truth]
+    errors = [errors_of(point, truth)[part] for point in points]
+    noise = scene["truth"].get(truth, {})
     levels = [of.get(part, 0.0) for of in noise.values()] if truth == "pde" else [noise.get(part, 0.0)]
     best = front(list(zip(times, errors, strict=True)))
     return Panel(truth, part, points, times, errors, best, max(levels, default=0.0))
 
 
 def _time(point: dict[str, Any], truth: str) -> float:
-    return without_picture(point) if truth == "pde" else point["ms"]
+    return without_picture(point) if truth in _OF_EXITANCE else point["ms"]
+
+
+def errors_of(point: dict[str, Any], truth: str) -> dict[str, float]:
+    """A point's errors against a truth by part; none where that did not judge it."""
+    return point["errors"].get(truth) or {}
+
+
+def stated(point: dict[str, Any]) -> float | None:
+    """The error of the picture that a point states itself, None of one that states none."""
+    return told["whole"] if (told := point.get("stated")) else None
 
 
 def without_picture(point: dict[str, Any]) -> float:
@@ -151,6 +173,10 @@ def short(point: dict[str, Any]) -> str:
 def kind(point: dict[str, Any]) -> str:
     """What a point is a variation of its family in: one of KINDS."""
     settings = point["settings"]
+    if settings.get("converge"):
+        return "converging"
+    if settings.get("seconds"):
+        return "walks"
     if settings["bake"] != "chain":  # path tracing, too, which bakes nothing
         return settings["bake"]
     if settings.get("cycles"):
@@ -178,6 +204,8 @@ KINDS = {
     "default": ("*", "star", "on the mesh that `bake` makes by default"),
     "polygrid": ("X", "x", "on a polygrid of the body"),
     "K": ("P", "cross", "on the paper's meshes, smaller: larger K"),
+    "converging": ("H", "hexagon2", "converges to an error; the bar ends at what it states"),
+    "walks": ("d", "diamond-tall", "random walks, by seconds"),
     "traced": ("v", "triangle-down", "path tracing, by samples a pixel"),
 }
 _COLOURS = {
@@ -196,6 +224,9 @@ _COLOURS = {
     "dipole per vertex": "#7f7f7f",
     "path tracing": "#111111",
     "path tracing, 15 scatterings at most": "#e34a33",
+    "converging picture": "#008b8b",
+    "random walks, plain": "#7a5195",
+    "random walks, guided": "#b8860b",
 }
 _MORE = ("#17a2a2", "#bcbd22", "#8c564b", "#e377c2")
 

@@ -9,7 +9,7 @@ from rich.table import Table
 from quadgraph_validation.chart import chart_record as records
 
 _COLUMNS = tuple((truth, part) for truth in records.TRUTHS for part in records.PARTS)
-_WORDS = {"pde": "PDE", "transport": "transport"}
+_WORDS = {"pde": "PDE", "transport": "transport", "walks": "walks"}
 
 
 def all_of(record: dict[str, Any]) -> list[Table]:
@@ -19,7 +19,8 @@ def all_of(record: dict[str, Any]) -> list[Table]:
 
 def _table(scene: dict[str, Any]) -> Table:
     errors = (f"{_WORDS[truth]}, {part}" for truth, part in _COLUMNS)
-    table = Table("method", "ms", "without picture", "solve", *errors, "flicker", "frames behind light / camera")
+    moving = ("flicker", "frames behind light / camera")
+    table = Table("method", "ms", "without picture", "solve", *errors, "stated", *moving)
     table.title = f"{scene['name']} on {records.device_text(scene)}; *: best at its time"
     table.columns[0].no_wrap = True
     best = {
@@ -28,7 +29,7 @@ def _table(scene: dict[str, Any]) -> Table:
     done = [point for point in scene["points"] if not point.get("failed")]
     for point in sorted(done, key=lambda point: point["ms"]):
         cells = [_cell(point, column, best.get(column, [])) for column in _COLUMNS]
-        table.add_row(point["name"], *(f"{ms:.3g}" for ms in _times(point)), *cells, *_in_motion(point))
+        table.add_row(point["name"], *(f"{ms:.3g}" for ms in _times(point)), *cells, _stated(point), *_in_motion(point))
     failed = [f"{point['name']}: {point['failed']}" for point in scene["points"] if point.get("failed")]
     table.caption = "\n".join(failed)
     return table
@@ -36,10 +37,15 @@ def _table(scene: dict[str, Any]) -> Table:
 
 def _cell(point: dict[str, Any], column: tuple[str, str], best: list[str]) -> str:
     truth, part = column
-    errors = point["errors"][truth] or {}
+    errors = records.errors_of(point, truth)
     if part not in errors:
         return ""
     return f"{100 * errors[part]:.3g}%" + ("*" if point["name"] in best else "")
+
+
+def _stated(point: dict[str, Any]) -> str:
+    stated = records.stated(point)
+    return "" if stated is None else f"{100 * stated:.3g}%"
 
 
 def _in_motion(point: dict[str, Any]) -> tuple[str, str]:

@@ -8,14 +8,22 @@ from pathlib import Path
 
 from quadgraph.base.cache_folder import cache_folder
 from quadgraph.base.errors import InputError
+from quadgraph.base.progress import ProgressCallback
 from quadgraph_validation.base.study_folders import COMMITTED_TRUTH
 from quadgraph_validation.bodies import scene_bakes, scene_meshes
 from quadgraph_validation.bodies.scenes import StudyScene
-from quadgraph_validation.chart import dipole_method, engine_methods, path_method, traced_method  # noqa: F401  they register
+from quadgraph_validation.chart import (  # noqa: F401  they register
+    converging_method,
+    dipole_method,
+    engine_methods,
+    path_method,
+    traced_method,
+    walked_method,
+)
 from quadgraph_validation.chart.chart_body import ChartBody
 from quadgraph_validation.chart.chart_judge import ChartJudge, PdeTruths
-from quadgraph_validation.chart.chart_method import ChartMethod, methods, pde_of
-from quadgraph_validation.truth import pde_truth, truth_run
+from quadgraph_validation.chart.chart_method import ChartMethod, methods, pde_of, walks_judge
+from quadgraph_validation.truth import pde_truth, scene_walks, truth_run
 from quadgraph_validation.truth.stored_truth import StoredTruth
 from quadgraph_validation.truth.truth_run import TracedSubject
 
@@ -49,20 +57,24 @@ def subject(
     working: Path,
     device: str,
     pixels: int,
+    tell: ProgressCallback,
 ) -> tuple[ChartBody, ChartJudge, list[ChartMethod]]:
     """A scene with its judge and its methods, those that `wanted` names.
 
-    Bakes the chain if it is not there; raises InputError if a truth in `against` is absent or stale.
+    Bakes the chain if it is not there, and walks if that is not done; raises InputError if a truth in `against` is
+    absent or stale.
     """
     original = truth_run.subject(scene, scene_meshes.file(scene, where.meshes)) if "transport" in against else None
     images = {} if original is None else _images(original, where)
-    ways = OTHER_BAKES if "transport" in against else ()
+    ways = OTHER_BAKES if {"transport", "walks"} & set(against) else ()
     others = {choice: scene_bakes.of(scene, choice, where.meshes, where.pde) for choice in ways}
     chain = pde_truth.chain(scene, where.meshes, where.pde)
     body = ChartBody(scene, chain, working, device, pixels, others, original)
     chosen = methods(body.chain, wanted)
     pde = _pde(scene, where, chosen) if "pde" in against else {}
-    return body, ChartJudge(body, pde, images), chosen
+    walked = "walks" in against and any(walks_judge(method.settings) for method in chosen)
+    walks = scene_walks.made(scene, body.default_surface, where.pde, tell) if walked else None
+    return body, ChartJudge(body, pde, images, walks), chosen
 
 
 def _images(found: TracedSubject, where: Folders) -> dict[str, StoredTruth]:

@@ -178,11 +178,14 @@ class EngineMethod(PreparedMethod):
         self._engine.solve(**self._options | settled | {"sweep_seed": seed})
 
     def _picture(self, view: View) -> np.ndarray:
-        found = self._show(view.text, PIXELS)
+        return self._seen(self._show(view.text, PIXELS))
+
+    def _seen(self, found: Any) -> np.ndarray:
+        """(n, n, 3) W/(mm^2 sr) of a picture as the truth has it."""
         shown = np.asarray(found.scattered, np.float64)
         return shown if self._body.scene.direction else shown + np.asarray(found.unscattered, np.float64)
 
-    def _show(self, view: str, pixels: int) -> Any:
+    def _show(self, view: str, pixels: int, **more: float) -> Any:
         radiance = self.radiance if self._can_gather or self.radiance == "single" else "lambertian"
         size = {"width": pixels, "height": pixels, "samples": 4}
         return self._engine.render(
@@ -191,6 +194,7 @@ class EngineMethod(PreparedMethod):
             **size,
             radiance=radiance,
             transmission_roughness=0,  # as the truth has it
+            **more,
         )
 
 

@@ -44,7 +44,7 @@ class ChartRun:
 def measured(names: Sequence[str], wanted: ChartRun, tell: ProgressCallback) -> list[dict[str, Any]]:
     """Scenes of the record, one after the other. Raises InputError before anything is measured if a truth is absent."""
     with tempfile.TemporaryDirectory(prefix="quadgraph-chart-") as working:
-        subjects = [_subject(name, wanted, Path(working)) for name in names]
+        subjects = [_subject(name, wanted, Path(working), tell) for name in names]
         copied = load_core().copy_bandwidth(wanted.device)
         # Popped, and measured in a function: each with its engines is let go before the next.
         return [_measured(subjects.pop(0), wanted, copied, tell) for _ in range(len(subjects))]
@@ -63,10 +63,11 @@ def scene_task(name: str, wanted: Mapping[str, Any]) -> dict[str, Any]:
     return measured([name], ChartRun(**wanted), lambda text: None)[0]
 
 
-def _subject(name: str, wanted: ChartRun, working: Path) -> _Subject:
+def _subject(name: str, wanted: ChartRun, working: Path, tell: ProgressCallback) -> _Subject:
     (scene,) = scenes.chosen([name])
     where = chart_truths.folders(Path(wanted.meshes), Path(wanted.truth) if wanted.truth else None)
-    return chart_truths.subject(scene, where, wanted.against, wanted.methods, working, wanted.device, wanted.pixels)
+    how = (wanted.device, wanted.pixels, tell)
+    return chart_truths.subject(scene, where, wanted.against, wanted.methods, working, *how)
 
 
 def _measured(subject: _Subject, wanted: ChartRun, copied: Mapping[str, Any], tell: ProgressCallback) -> dict[str, Any]:

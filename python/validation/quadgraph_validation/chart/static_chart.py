@@ -19,6 +19,7 @@ _COARSER = 0.55  # of that per level
 _DECADES = (2000.0, 50_000.0)  # times as much at the end of an axis: more ticks would run together
 _ROOM = 0.65  # of the width of all points, on the left
 _MOST_LABELS = 9  # in a panel; of a longer front those are named that fall most below the one before
+_ALONG = ("level", "K", "samples", "converge", "seconds")  # settings of which a line joins the values
 _WORTH = 1.05  # times lower than the one before is what is named
 
 
@@ -80,6 +81,7 @@ def _panel(axis: Any, panel: Panel, colours: dict[str, str]) -> None:
         look = {"color": colours[point["family"]], "marker": marker, "linewidths": 1 if index in panel.front else 0.5}
         look["edgecolors"] = "#222222" if index in panel.front else "w"
         axis.scatter(panel.times[index], error, size, zorder=3, **look)
+    _stated(axis, panel, colours)
     _front(axis, panel)
     if panel.noise > 0:
         axis.axhspan(axis.get_ylim()[0], panel.noise, color="#000000", alpha=0.06, linewidth=0, zorder=0)
@@ -91,23 +93,32 @@ def _panel(axis: Any, panel: Panel, colours: dict[str, str]) -> None:
         axis.spines[side].set_visible(False)
 
 
+def _stated(axis: Any, panel: Panel, colours: dict[str, str]) -> None:
+    """Bars from true errors to those that points state themselves."""
+    for point, x, error, stated in zip(panel.points, panel.times, panel.errors, panel.stated, strict=True):
+        if stated != error:
+            look = {"color": colours[point["family"]], "linewidth": 1.0, "marker": "_", "markevery": [1], "zorder": 2}
+            axis.plot([x, x], [error, stated], **look)
+
+
 def _front(axis: Any, panel: Panel) -> None:
     """What is reached at each time, as steps to the edges of the panel, which has room for labels."""
     times, errors = panel.times, panel.errors
     room = max(3.5, (max(times) / min(times)) ** _ROOM)
     axis.set_xlim(min(times) / room, max(times) * 1.5)
-    axis.set_ylim(min([*errors, panel.noise or errors[0]]) / 1.8, max(errors) * 2)
+    shown = [*errors, *panel.stated]
+    axis.set_ylim(min([*shown, panel.noise or errors[0]]) / 1.8, max(shown) * 2)
     x, y = zip(*((times[i], errors[i]) for i in panel.front), strict=True)
     x, y = (x[0], *x, axis.get_xlim()[1]), (axis.get_ylim()[1], *y, y[-1])
     axis.plot(x, y, color="#222222", linewidth=1.4, drawstyle="steps-post", zorder=2)
 
 
 def _series(panel: Panel) -> list[list[int]]:
-    """Points that differ in the level alone, in K alone, or in samples alone, at least two."""
+    """Points that differ in one of _ALONG alone, at least two."""
     found: dict[tuple, list[int]] = {}
     for index, point in enumerate(panel.points):
         settings = point["settings"].items()
-        key = tuple((name, value) for name, value in sorted(settings) if name not in ("level", "K", "samples"))
+        key = tuple((name, value) for name, value in sorted(settings) if name not in _ALONG)
         found.setdefault((point["family"], *key), []).append(index)
     ordered = (sorted(series, key=lambda i: records.coarseness(panel.points[i])) for series in found.values())
     return [series for series in ordered if len(series) > 1]

@@ -13,7 +13,7 @@ import numpy as np
 from quadgraph.base.errors import InputError, SolverError, ToolError
 from quadgraph_validation.bodies.scenes import PIXELS, StudyScene, View
 from quadgraph_validation.chart.chart_body import MOTION_SHARE, ChartBody, direction_at, strength_at, view_at
-from quadgraph_validation.chart.chart_method import ChartMethod, MethodChain, PreparedMethod, register
+from quadgraph_validation.chart.chart_method import SWING, ChartMethod, MethodChain, PreparedMethod, register
 from quadgraph_validation.truth import path_tracing
 from quadgraph_validation.truth.path_tracing import PathEnds, Tracer
 from quadgraph_validation.truth.truth_run import TracedSubject
@@ -33,14 +33,17 @@ _VIEW = "from here"
 class TracedMethod(PreparedMethod):
     """Mitsuba's `volpath` by `samples` a pixel of a frame, its paths ended after `most` scatterings, None for never.
 
-    shared: pictures at rest, which methods that differ in their samples alone share.
+    variant: Mitsuba's, which are programs of their own; shared: pictures at rest, which methods that differ in their
+    samples alone share.
     """
 
     samples: int
     most: int | None = None
+    variant: str = path_tracing.SCALAR
     shared: dict[tuple[float, float, int], np.ndarray] = field(default_factory=dict, repr=False)
     _drawn: int = field(default=0, repr=False)
     _step: float = field(default=0.0, repr=False)
+    _processor: float = field(default=0.0, repr=False)
 
     @property
     def family(self) -> str:
@@ -50,7 +53,8 @@ class TracedMethod(PreparedMethod):
     @property
     def name(self) -> str:
         """Family and samples."""
-        return f"{self.family} · {self.samples} sample{'s' if self.samples > 1 else ''} a pixel"
+        compiled = "" if self.variant == path_tracing.SCALAR else f" · {self.variant}"
+        return f"{self.family} · {self.samples} sample{'s' if self.samples > 1 else ''} a pixel{compiled}"
 
     @property
     def settings(self) -> dict[str, Any]:
@@ -58,13 +62,13 @@ class TracedMethod(PreparedMethod):
         equations = {"method": "path-tracing", "model": "transport", "source": "paths", "solver": "volpath"}
         display = {"level": 0, "inter_reflection": True, "radiance": "traced", "cycles": 0, "tolerance": None}
         told = equations | display | {"bake": TRACED, "K": None, "samples": self.samples, "scatterings": self.most}
-        told |= {"roulette": _ROULETTE}
+        told |= {"roulette": _ROULETTE, "variant": self.variant}
         return told | {"runs_on": f"processor (Mitsuba {path_tracing.MITSUBA}); its scene is made untimed"}
 
     @property
     def moves(self) -> bool:
-        """With few samples."""
-        return self.samples <= _MOST_MOVING
+        """With few samples, in the variant that the truth is made by."""
+        return self.samples <= _MOST_MOVING and self.variant == path_tracing.SCALAR
 
     @property
     def noisy(self) -> bool:
@@ -72,23 +76,33 @@ class TracedMethod(PreparedMethod):
         return True
 
     def prepare(self, body: ChartBody) -> None:
-        """See that it can be traced: there is nothing to settle. Raises ToolError without Mitsuba."""
-        self._given = body
+        """See that it can be traced: there is nothing to settle; what is compiled draws once. Raises ToolError without
+        Mitsuba, or its variant.
+        """
+        first, self._given = self._given is not body, body
         try:
-            path_tracing.load_mitsuba()
+            path_tracing.load_mitsuba(self.variant)
         except InputError as error:
             raise ToolError(str(error)) from error
+        if first and self.variant != path_tracing.SCALAR:
+            self.frame(SWING[0])
 
     def frame(self, step: int) -> dict[str, float]:
         """A picture of the first view; ms that Mitsuba takes, once it has the scene."""
         self._step = step
-        ms = 0.0
+        ms = self._processor = 0.0
         for channel in self._channels:
             with self._tracer(step, next(iter(self._body.scene.views.values())), channel, self._body.pixels) as tracer:
-                start = time.perf_counter()
+                start, processor = time.perf_counter(), time.process_time()
                 tracer.whole(self.samples, self._seed())
                 ms += 1e3 * (time.perf_counter() - start)
+                self._processor += time.process_time() - processor
         return {"path tracing": ms}
+
+    @property
+    def processor_seconds(self) -> float:
+        """Of the same."""
+        return self._processor
 
     def exitance(self) -> np.ndarray:
         """Raises SolverError: it makes pictures alone, and answers no PDE."""
@@ -144,14 +158,18 @@ class TracedMethod(PreparedMethod):
     def _tracer(self, step: float, view: View, channel: int, pixels: int) -> Iterator[Tracer]:
         found = self._subject
         scene: StudyScene = replace(found.scene, direction=direction_at(found.scene, step), views={_VIEW: view})
-        ends = PathEnds(self.most, _ROULETTE)
-        with path_tracing.tracer(scene, found.surface, found.grids[channel], _VIEW, ends, pixels) as tracer:
+        how = (PathEnds(self.most, _ROULETTE), pixels, self.variant)
+        with path_tracing.tracer(scene, found.surface, found.grids[channel], _VIEW, *how) as tracer:
             yield tracer
 
 
 @register
 def traced_methods(chain: MethodChain) -> Iterator[ChartMethod]:
-    """By a few numbers of samples, each with any number of scatterings and with few; where there is a mesh to trace."""
+    """By a few numbers of samples, each with any number of scatterings and with few, and of the most samples also
+    compiled for the processor; where there is a mesh to trace.
+    """
     for most in (None, CUT) if chain.original else ():
         at_rest: dict[tuple[float, float, int], np.ndarray] = {}
-        yield from (TracedMethod(samples, most, at_rest) for samples in _SAMPLES)
+        yield from (TracedMethod(samples, most, shared=at_rest) for samples in _SAMPLES)
+    if chain.original:
+        yield TracedMethod(_SAMPLES[-1], variant=path_tracing.COMPILED)

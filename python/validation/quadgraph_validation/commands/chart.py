@@ -15,8 +15,8 @@ from quadgraph.base.errors import InputError
 from quadgraph.work.schedulers import add_scheduler_argument
 from quadgraph_validation.base.study_folders import COMMITTED_TRUTH, add_meshes_argument
 
-TRUTHS = ("pde", "transport")
-_TABLE_WIDTH = 215  # characters; narrower, the tables cannot be read
+TRUTHS = ("pde", "transport", "walks")
+_TABLE_WIDTH = 250  # characters; narrower, the tables cannot be read
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -70,14 +70,17 @@ def _add_measure_options(group: argparse._ArgumentGroup) -> None:
 
 def _add_truth_options(group: argparse._ArgumentGroup) -> None:
     group.add_argument(
-        "--against", choices=TRUTHS, action="append", help="only this truth (default: both; `reference` makes them)"
+        "--against",
+        choices=TRUTHS,
+        action="append",
+        help="only this truth; several allowed (default: all; `reference` makes pde and transport)",
     )
     add_meshes_argument(group)
     group.add_argument(
         "--truth",
         type=Path,
         metavar="FOLDER",
-        help=f"where truths are (default: {COMMITTED_TRUTH} for transport, ~/.cache/quadgraph for pde)",
+        help=f"where truths are (default: {COMMITTED_TRUTH} for transport, ~/.cache/quadgraph for others)",
     )
 
 
@@ -87,15 +90,16 @@ def run(args: argparse.Namespace) -> int:
     from rich.console import Console
 
     from quadgraph_validation.chart import chart_record as records
-    from quadgraph_validation.chart import chart_tables
+    from quadgraph_validation.chart import chart_tables, equal_error
 
     kept = records.read(args.json) if args.add and args.json.exists() else None
     record = records.read(args.record) if args.record else json.loads(json.dumps(_measured(args)))
     record = records.added(kept, record) if kept else record
     console = Console(highlight=False)
     console.width = max(console.width, _TABLE_WIDTH)
-    for table in chart_tables.all_of(record):
-        console.print(table)
+    for table in (*chart_tables.all_of(record), equal_error.table(record)):
+        if table is not None:
+            console.print(table)
     if args.json and not args.record:
         atomic_file.write_json(args.json, record)
     if args.output:

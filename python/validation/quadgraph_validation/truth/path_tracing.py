@@ -6,10 +6,13 @@ equations enters but the place of the camera.
 
 from __future__ import annotations
 
+import subprocess
+import sys
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -19,9 +22,19 @@ import trimesh
 from quadgraph.base.errors import InputError
 from quadgraph.mesh.surface import Surface
 from quadgraph_validation.base import extra_module
-from quadgraph_validation.bodies.scenes import FOV, PIXELS, Grid, StudyScene, bounding_sphere, camera_axes
+from quadgraph_validation.bodies.scenes import (
+    FOV,
+    PIXELS,
+    Grid,
+    StudyScene,
+    View,
+    bounding_sphere,
+    camera_axes,
+    of_medium,
+)
 
 MITSUBA = "3.9.1"
+SCALAR, COMPILED = "scalar_rgb", "llvm_ad_rgb"  # variants: one path after the other; many at once, by LLVM
 BATCH = 16  # samples a pixel
 _BLACK = 1e3  # 1/mm, absorption of the body whose surface reflection is taken away
 
@@ -46,28 +59,60 @@ class PathEnds:
 
 def settings() -> dict[str, Any]:
     """What a picture depends on beside the scene, ready for JSON."""
-    return {"mitsuba": MITSUBA, "variant": "scalar_rgb", "integrator": PathEnds().integrator(1), "batch": BATCH}
+    return {"mitsuba": MITSUBA, "variant": SCALAR, "integrator": PathEnds().integrator(1), "batch": BATCH}
 
 
-def load_mitsuba() -> Any:
-    """Import Mitsuba in the variant that is used. Raises InputError if it is absent or of another version."""
+def load_mitsuba(variant: str = SCALAR) -> Any:
+    """Import Mitsuba in a variant. Raises InputError if it is absent, of another version, or has none of that name."""
     mitsuba = extra_module.load("mitsuba", "truth")
     if mitsuba.__version__ != MITSUBA:
         raise InputError(f"Mitsuba: version {mitsuba.__version__} found, the truth is made with {MITSUBA}")
-    mitsuba.set_variant("scalar_rgb")
+    if variant != SCALAR and not _runs(variant):
+        raise InputError(
+            f"Mitsuba: variant {variant}: a first picture ended its process; llvm variants want LLVM 17 or later, "
+            "whose libLLVM.so $DRJIT_LIBLLVM_PATH can name"
+        )
+    mitsuba.set_variant(variant)
     return mitsuba
+
+
+@cache
+def _runs(variant: str) -> bool:
+    """Whether a process outlives a picture by it: an LLVM that lacks an instruction aborts."""
+    tried = f"from {__name__} import draw_first; draw_first({variant!r})"
+    return subprocess.run([sys.executable, "-c", tried], capture_output=True, check=False).returncode == 0
+
+
+def draw_first(variant: str) -> None:
+    """Trace a block of a few pixels. Where the variant cannot compile it, the process may end."""
+    mitsuba = extra_module.load("mitsuba", "truth")
+    mitsuba.set_variant(variant)
+    one = np.ones((1, 1, 1), np.float32)
+    block = trimesh.creation.box()
+    coefficients, views = of_medium([1.0] * 3, [1.0] * 3), {"A": View(0, 0, 3, ())}
+    scene = StudyScene("block", "", 1.0, coefficients, 1.0, (0.0, 0.0, -1.0), views)
+    surface = Surface(np.asarray(block.vertices, np.float64), np.asarray(block.faces, np.int64))
+    with tempfile.TemporaryDirectory(prefix="quadgraph-truth-") as folder:
+        grid = Grid(np.full(3, -0.5), 1.0, one, one)
+        Tracer(mitsuba, scene, surface, grid, "A", Path(folder), PathEnds(), 8).whole(4, 1)
 
 
 @contextmanager
 def tracer(
-    scene: StudyScene, surface: Surface, grid: Grid, view: str, ends: PathEnds | None = None, pixels: int = PIXELS
+    scene: StudyScene,
+    surface: Surface,
+    grid: Grid,
+    view: str,
+    ends: PathEnds | None = None,
+    pixels: int = PIXELS,
+    variant: str = SCALAR,
 ) -> Iterator[Tracer]:
     """Set up one view of a scene, in pictures of so many pixels an edge; its meshes live in a temporary folder.
 
     Raises InputError without Mitsuba.
     """
     with tempfile.TemporaryDirectory(prefix="quadgraph-truth-") as folder:
-        yield Tracer(load_mitsuba(), scene, surface, grid, view, Path(folder), ends or PathEnds(), pixels)
+        yield Tracer(load_mitsuba(variant), scene, surface, grid, view, Path(folder), ends or PathEnds(), pixels)
 
 
 class Tracer:

@@ -1,0 +1,142 @@
+"""What leaves the patches of a scene's surface, by random walks through its triangles (mesh_walk.py), kept on disk."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from quadgraph.api.lights import as_light
+from quadgraph.baking.budget.surface_errors import unlit_part
+from quadgraph.mesh.patches import patches_of
+from quadgraph.mesh.surface import Surface
+from quadgraph_validation.base import extra_module, store
+from quadgraph_validation.bodies.scenes import StudyScene
+from quadgraph_validation.bodies.unseen_cases import UnseenMedium
+
+WALKS = 1_000_000  # that meet the body, in each channel
+BATCHES = 20  # of them
+_SEED = 29
+_CELLS = 128  # along the height, of coefficients that differ from place to place
+_FEW = 5  # patches: a part with fewer is not judged
+_ARRAYS = ("patch", "face_area", "entered", "exitance", "error")
+
+
+@dataclass(frozen=True, eq=False)
+class SceneWalks:
+    """patch (m,) and face_area (m,), mm^2: of each triangle. By patch, (n, c) W/mm^2, c 1 of a grey scene: entered,
+    irradiance that came in for the first time; exitance, of light that has scattered; error, its standard error.
+    """
+
+    patch: np.ndarray
+    face_area: np.ndarray
+    entered: np.ndarray
+    exitance: np.ndarray
+    error: np.ndarray
+
+    @property
+    def area(self) -> np.ndarray:
+        """(n,) mm^2 of each patch."""
+        return np.bincount(self.patch, self.face_area)
+
+    @property
+    def noise(self) -> dict[str, float]:
+        """Standard error by part, relative RMS over its patches."""
+        return {part: float(np.sqrt(noise / power)) for part, (noise, power) in self._sums().items()}
+
+    def errors(self, exitance: np.ndarray) -> dict[str, float]:
+        """Relative RMS by part of an exitance (m, 3) of the triangles, as means over patches, the noise of the walks
+        taken away in quadrature; 0 where that is all there is.
+        """
+        channels = range(self.exitance.shape[1])
+        power = np.stack([np.bincount(self.patch, self.face_area * exitance[:, c]) for c in channels], axis=1)
+        off = ((power / self.area[:, None] - self.exitance) ** 2).sum(axis=1)
+        found = {}
+        for part, (noise, scale) in self._sums().items():
+            square = (self.area * off)[self._parts[part]].sum()
+            found[part] = float(np.sqrt(max(square - noise, 0.0) / scale))
+        return found
+
+    def _sums(self) -> dict[str, tuple[float, float]]:
+        """By part: sums over its patches of area times squares, of the error and of the exitance without it."""
+        noise = self.area * (self.error**2).sum(axis=1)
+        square = self.area * (self.exitance**2).sum(axis=1)
+        return {
+            part: (float(noise[chosen].sum()), float((square - noise)[chosen].sum()))
+            for part, chosen in self._parts.items()
+        }
+
+    @property
+    def _parts(self) -> dict[str, np.ndarray]:
+        unlit = unlit_part(self.area, self.entered)
+        whole = {"whole": np.ones(len(self.area), bool)}
+        return whole | ({"unlit": unlit} if unlit.sum() >= _FEW else {})
+
+
+def made(scene: StudyScene, surface: Surface, folder: Path, tell: Callable[[str], None]) -> SceneWalks:
+    """Those of a scene on a surface that stands for its body, walked if they are not in `folder`.
+
+    Raises InputError without Numba.
+    """
+    key = _key(scene, surface)
+    path = folder / f"{scene.name}-exitance-{store.digest(key)[:12]}.npz"
+    if not path.exists():
+        extra_module.load("numba", "walks")
+        folder.mkdir(parents=True, exist_ok=True)
+        found = walked(scene, surface, WALKS, tell)
+        store.save(path, key, {name: getattr(found, name) for name in _ARRAYS})
+    return SceneWalks(**store.load(path, key, _ARRAYS, "random walks"))
+
+
+def walked(scene: StudyScene, surface: Surface, walks: int, tell: Callable[[str], None]) -> SceneWalks:
+    """By so many walks in each channel."""
+    from quadgraph_validation.truth.mesh_walk import MeshWalker
+
+    patch = patches_of(surface)
+    face_area = np.linalg.norm(surface.doubled_normals, axis=1) / 2
+    area = np.bincount(patch, face_area)
+    light = as_light(scene.light)
+    entered, scattered = [], []
+    for channel in range(3 if scene.coloured else 1):
+        walker = MeshWalker(surface, medium_of(scene, surface, channel), light, patch)
+        batches = []
+        for number in range(BATCHES):
+            tell(f"{scene.name}: random walks, channel {channel + 1}, batch {number + 1} of {BATCHES}")
+            batches.append(walker.batch(walks // BATCHES, number, _SEED + channel))
+        entered.append(np.array([batch.entered for batch in batches]) / area)
+        scattered.append(np.array([batch.scattered for batch in batches]) / area)
+    by_batch = np.stack(scattered, axis=-1)
+    error = by_batch.std(axis=0, ddof=1) / np.sqrt(BATCHES)
+    return SceneWalks(patch, face_area, np.stack(entered, axis=-1).mean(axis=0), by_batch.mean(axis=0), error)
+
+
+def medium_of(scene: StudyScene, surface: Surface, channel: int) -> UnseenMedium:
+    """What fills a scene's body in a channel: one cell where it is the same everywhere, else a fine grid."""
+    low, high = surface.vertices.min(axis=0), surface.vertices.max(axis=0)
+    spacing = scene.height / _CELLS
+    counts = np.ceil((high - low) / spacing).astype(int) + 1
+    axes = [low[k] + spacing * np.arange(counts[k]) for k in (2, 1, 0)]
+    z, y, x = np.meshgrid(*axes, indexing="ij")
+    values = scene.coefficients(np.stack([x, y, z], axis=-1))
+    of_channel = (np.asarray(v[..., channel] if scene.coloured else v, np.float32) for v in values)
+    scattering, absorption = of_channel
+    if all((grid == grid.flat[0]).all() for grid in (scattering, absorption)):
+        scattering, absorption = scattering[:1, :1, :1], absorption[:1, :1, :1]
+    first = (float(low[0]), float(low[1]), float(low[2]))
+    return UnseenMedium("scene", scene.eta, scattering, absorption, first, spacing)
+
+
+def _key(scene: StudyScene, surface: Surface) -> dict[str, Any]:
+    """Everything that enters them."""
+    digest = hashlib.sha256()
+    for channel in range(3 if scene.coloured else 1):
+        medium = medium_of(scene, surface, channel)
+        for values in (medium.sigma_s_prime, medium.sigma_a, np.array([*medium.first, medium.spacing])):
+            digest.update(repr(values.shape).encode() + np.ascontiguousarray(values).tobytes())
+    body = hashlib.sha256(surface.vertices.tobytes() + surface.triangles.tobytes()).hexdigest()
+    told = {"scene": scene.name, "surface": body, "coefficients": digest.hexdigest(), "eta": scene.eta}
+    return told | {"light": scene.light, "walks": {"walks": WALKS, "batches": BATCHES, "seed": _SEED}}
