@@ -96,8 +96,9 @@ def test_the_engines_walks_and_those_of_the_truth_agree_to_their_noise(body, wal
     off = (np.array(by_patch).T - walks.exitance) / np.hypot(np.array(noise).T, walks.error)
     power, truth = ((walks.area[:, None] * each).sum() for each in (np.array(by_patch).T, walks.exitance))
     doubt = np.sqrt(((walks.area[:, None] * np.hypot(np.array(noise).T, walks.error)) ** 2).sum()) / truth
-    print(f"mean square over the noise {np.mean(off**2):.2f}, power off by {power / truth - 1:+.2%} of {doubt:.2%}")
-    assert 0.5 < np.mean(off**2) < 2.5  # a walk leaves light on several faces: these have some noise in common
+    middle = np.median(np.abs(off))
+    print(f"median over the noise {middle:.2f}, power off by {power / truth - 1:+.2%} of {doubt:.2%}")
+    assert 0.4 < middle < 1.4  # .67 of a normal one; few walks know their own noise badly, which makes tails
     assert power == pytest.approx(truth, rel=5 * doubt)
 
 
