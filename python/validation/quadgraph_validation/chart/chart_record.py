@@ -204,7 +204,7 @@ KINDS = {
     "default": ("*", "star", "on the mesh that `bake` makes by default"),
     "polygrid": ("X", "x", "on a polygrid of the body"),
     "K": ("P", "cross", "on the paper's meshes, smaller: larger K"),
-    "converging": ("H", "hexagon2", "converges to an error; the bar ends at what it states"),
+    "converging": ("H", "hexagon2", "converges; bar: to what it states"),
     "walks": ("d", "diamond-tall", "random walks, by seconds"),
     "traced": ("v", "triangle-down", "path tracing, by samples a pixel"),
 }
