@@ -62,7 +62,7 @@ def body(ball) -> ChartBody:
 def converged(ball) -> dict[float, tuple[dict, np.ndarray]]:
     """What is stated of both views, and the picture of the first, by what was asked for."""
     body, found = body_of(ball), {}
-    for asked in (0.2, 0.03):
+    for asked in (0.2, 0.015):
         method = ConvergingMethod(choice=Choice(), converge=asked)
         method.prepare(body)
         assert method.frame(0)["converging picture"] > 0
@@ -96,9 +96,9 @@ def test_a_smaller_error_takes_more_solves_and_is_stated(converged):
             assert view["reached"] or view["limit"]
         parts = [view["error"]["whole"] for view in stated["views"].values()]
         assert min(parts) <= stated["whole"] <= max(parts)
-    assert told[0.03]["whole"] < told[0.2]["whole"]
+    assert told[0.015]["whole"] < told[0.2]["whole"]
     solves = {asked: stated["views"]["A"]["solves"] for asked, stated in told.items()}
-    assert solves[0.03] > solves[0.2] == 1
+    assert solves[0.015] > solves[0.2] == 1
 
 
 def test_pictures_to_two_errors_differ_by_no_more_than_both_state(converged, body):
@@ -153,7 +153,7 @@ def with_stated(tmp_path) -> Path:
     """A record with two points that state of themselves less, and more, than is true."""
     told = record(("bunny",))
     view = {"error": {"whole": 0.015}, "solves": 5, "sweeps": 3, "seconds": 9.0, "noise": 0.01}
-    for asked, stated in ((0.04, 0.015), (0.01, 0.06)):
+    for asked, stated in ((0.04, 0.03), (0.01, 0.06)):
         one = point("converging picture", 0, 90 / asked, 0.01)
         one["settings"] |= {"bake": "default", "converge": asked}
         one["stated"] = {"whole": stated, "views": {"A": view}}
@@ -166,7 +166,7 @@ def with_stated(tmp_path) -> Path:
 def test_bars_go_from_true_errors_to_stated_ones_in_the_panel_of_pictures(with_stated):
     whole, unlit = records.panels(records.read(with_stated)["scenes"][0])[2:4]
     own = [(true, said) for true, said in zip(whole.errors, whole.stated, strict=True) if true != said]
-    assert sorted(own) == [(0.03, 0.015), (0.03, 0.06)]
+    assert sorted(own) == [(0.015, 0.03), (0.015, 0.06)]
     assert unlit.stated == unlit.errors
 
 
