@@ -192,7 +192,7 @@ class Hand:
             now = screen_of(self.server.memory)
             seen = now[: SIZE[1], PANEL : SIZE[0]]
             same = seen.any() and np.array_equal(seen, before[: SIZE[1], PANEL : SIZE[0]])
-            quiet = quiet + 1 if same and self.sleeps() else 0
+            quiet = quiet + 1 if same and self.sleeps() and not self.busy() else 0
             assert patience.left(), "no picture is seen, or it changes by itself"
             before = now
         return now.astype(int)
