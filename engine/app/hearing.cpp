@@ -62,7 +62,7 @@ bool Viewer::replaces_work() const {
 // half_way: amid a piece of work, which is then lost.
 void Viewer::hear(bool half_way) {
   window_.poll(0);
-  const bool wanted = window_.events_wait() || window_.closing() || frames_wanted_ > 0;
+  const bool wanted = window_.events_wait() || frames_wanted_ > 0;
   if (Clock::now() - answered_ >= answer_pause && wanted) {
     const std::vector<Event> events = take_events();
     build_widgets(events);

@@ -97,7 +97,8 @@ std::vector<Segment> Viewer::chosen_outline() {
   if (outlined_ != state_.body) outlined_until_ = Clock::now() + outline_time;
   outlined_ = state_.body;
   const auto found = std::ranges::find(state_.bodies, state_.body);
-  if (found == state_.bodies.end() || Clock::now() > outlined_until_) return {};
+  outlines_ = found != state_.bodies.end() && Clock::now() <= outlined_until_;
+  if (!outlines_) return {};
   return picker_.outline(static_cast<std::uint32_t>(found - state_.bodies.begin()), seen_from(),
                          command_context().aspect);
 }

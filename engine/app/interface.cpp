@@ -192,6 +192,11 @@ bool Interface::has_text() const {
   return typing || ImGui::GetIO().WantTextInput;
 }
 
+bool Interface::moves() const {
+  const ImGuiContext& context = *ImGui::GetCurrentContext();
+  return context.ActiveId != 0 || context.NavWindowingTargetAnim != nullptr || context.DimBgRatio > 0;
+}
+
 void Interface::follow_swapchain() {
   if (generation_ == swapchain_.generation()) return;
   generation_ = swapchain_.generation();

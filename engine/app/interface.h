@@ -24,6 +24,10 @@ class Interface {
   bool has_keys() const;
   bool has_text() const;
 
+  // Whether widgets may change though the user does nothing: cursors blink, buttons that are held down repeat, and what
+  // is dimmed fades.
+  bool moves() const;
+
   // Draws the widgets. The image must be in COLOR_ATTACHMENT_OPTIMAL and is left in PRESENT_SRC_KHR.
   void draw(const vk::SwapchainFrame& frame);
 

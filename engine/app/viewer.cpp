@@ -16,7 +16,7 @@ namespace quadgraph {
 namespace {
 
 constexpr double budget_ms = 90;       // of a picture in motion: ten a second
-constexpr double idle_wait = 0.5;      // seconds
+constexpr double idle_wait = 0.5;      // seconds between frames where only a blinking cursor or the like changes
 constexpr double news_wait = 0.1;      // seconds, while a body is being baked
 constexpr float turntable_speed = 24;  // degrees a second: once in a quarter of a minute
 constexpr float longest_step = 0.25f;  // seconds that it goes on by at once, however long a picture takes
@@ -57,7 +57,8 @@ void Viewer::run() {
   }
   while (!leaving_) {
     window_.poll(patience());
-    const std::vector<Event> events = take_events();
+    // Before the engine works: amid that those of later are taken.
+    if (const std::vector<Event> events = take_events(); !events.empty()) build_widgets(events);
     try {
       if (std::exchange(state_.screenshot, false) && shown_) write_picture();
       if (opens()) open_file(std::exchange(state_.opening, {}));
@@ -66,7 +67,8 @@ void Viewer::run() {
       keep_up();
     } catch (const Interrupted&) {  // of what nothing else is made in the place of: the window closes
     }
-    build_widgets(events);
+    if (!draws()) continue;
+    build_widgets({});
     present();
   }
 }
@@ -83,12 +85,19 @@ void Viewer::turn() {
 
 // Seconds that nothing need happen for.
 double Viewer::patience() const {
-  if (state_.turntable) return 0;
-  if (frames_wanted_ > 0 || window_.events_wait() || !shown_) return 0;
-  if ((measured_.frames > 0 && !measured_.settled) || converges()) return 0;
-  if (swapchain_.width() > 0 && part() != shown_part_) return 0;
+  if (frames_wanted_ > 0 || window_.events_wait()) return 0;
+  if (swapchain_.width() == 0) return idle_wait;
+  const bool goes_on = state_.turntable || (measured_.frames > 0 && !measured_.settled);
+  if (!shown_ || part() != shown_part_ || (goes_on && !dragging_) || converges()) return 0;
   if (preview_ && !preview_->failed()) return news_wait;
   return measured_.settled ? idle_wait : 0.5 * settle_after;
+}
+
+// Whether another frame could look other than the last one.
+bool Viewer::draws() const {
+  if (frames_wanted_ > 0) return true;
+  const bool changes_by_itself = interface_.moves() || swapchain_.stale() || outlines_;
+  return changes_by_itself && Clock::now() - answered_ >= std::chrono::duration<double>(idle_wait);
 }
 
 Viewer::Part Viewer::part() const {

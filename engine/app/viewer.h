@@ -66,6 +66,7 @@ class Viewer {
   Part part() const;
   CommandContext command_context() const;
   double patience() const;
+  bool draws() const;
   void handle(const std::vector<Event>& events);
   void handle_key(const KeyEvent& event);
   void answer_question(int key);
@@ -135,6 +136,7 @@ class Viewer {
   std::optional<glm::dvec2> clicking_;  // where the pointer went down, pixels, and what has not gone on as a drag
   std::string outlined_;                // the body that was chosen last, whose edge is shown until then
   Clock::time_point outlined_until_;
+  bool outlines_ = false;  // it is shown
   int drag_button_ = 0, drag_mods_ = 0;
   double pointer_x_ = 0, pointer_y_ = 0;  // pixels
   std::optional<Scene> shown_;            // empty before the first picture

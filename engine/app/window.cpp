@@ -90,6 +90,19 @@ void Window::listen() {
   });
   glfwSetScrollCallback(
       window_, [](GLFWwindow* window, double x, double y) { owner(window).events_.push_back(ScrollEvent{x, y}); });
+  listen_for_showing();
+}
+
+void Window::listen_for_showing() {
+  const auto show = [](GLFWwindow* window) { owner(window).events_.push_back(ShowEvent{}); };
+  const auto show_changed = [](GLFWwindow* window, int) { owner(window).events_.push_back(ShowEvent{}); };
+  glfwSetWindowRefreshCallback(window_, show);
+  glfwSetWindowCloseCallback(window_, show);
+  glfwSetWindowFocusCallback(window_, show_changed);
+  glfwSetWindowIconifyCallback(window_, show_changed);
+  glfwSetCursorEnterCallback(window_, show_changed);
+  glfwSetFramebufferSizeCallback(window_,
+                                 [](GLFWwindow* window, int, int) { owner(window).events_.push_back(ShowEvent{}); });
 }
 
 vk::SurfaceSource Window::surface() const {

@@ -33,7 +33,8 @@ struct ScrollEvent {
 struct DropEvent {
   std::filesystem::path file;  // the first of those that were dropped
 };
-using Event = std::variant<KeyEvent, TextEvent, ButtonEvent, MotionEvent, ScrollEvent, DropEvent>;
+struct ShowEvent {};  // the window is seen anew, has another size or focus, or is to close: it must be drawn
+using Event = std::variant<KeyEvent, TextEvent, ButtonEvent, MotionEvent, ScrollEvent, DropEvent, ShowEvent>;
 
 class Window {
  public:
@@ -78,6 +79,7 @@ class Window {
 
  private:
   void listen();
+  void listen_for_showing();
   std::string title() const;
 
   GLFWwindow* window_ = nullptr;

@@ -48,6 +48,9 @@ class Swapchain {
   // Grows by one with every new set of images: what was made of the views is then stale.
   std::uint64_t generation() const { return generation_; }
 
+  // Whether the next frame has new images.
+  bool stale() const { return stale_; }
+
   // Begins a frame; empty if there is none to show now: the window is minimised, or has just changed.
   std::optional<SwapchainFrame> begin();
 

@@ -24,6 +24,9 @@ from pathlib import Path
 
 import pytest
 
+from cpu_seconds import pytest_runtest_makereport as pytest_runtest_makereport
+from cpu_seconds import pytest_runtest_protocol as pytest_runtest_protocol
+from cpu_seconds import pytest_terminal_summary as pytest_terminal_summary
 from leaks import nothing_left_on_devices as nothing_left_on_devices
 from quadgraph.baking.pipeline import BakeOptions, bake
 from quadgraph.mesh.surface import Surface
@@ -34,26 +37,29 @@ ROOT = Path(__file__).resolve().parents[2]
 # Files that take longest, in about this order: begun first, so that no worker is left with one of them at the end, and
 # those that wait for windows beside others.
 LONGEST = (
-    "test_budget.py",
-    "test_window_preview.py",
-    "test_volume_recovery.py",
-    "test_accuracy_unseen.py",
-    "test_window_panel.py",
-    "test_attack.py",
-    "test_acquire.py",
-    "test_window.py",
-    "test_transport_correction.py",
-    "test_wrap.py",
     "test_bake.py",
+    "test_window_preview.py",
+    "test_wrap.py",
+    "test_window_hearing.py",
+    "test_accuracy_unseen.py",
+    "test_volume_recovery.py",
+    "test_window.py",
+    "test_acquire.py",
+    "test_window_look.py",
+    "test_repair.py",
+    "test_attack.py",
+    "test_window_panel.py",
+    "test_mesh_walk.py",
+    "test_real_meshes.py",
+    "test_budget.py",
+    "test_window_samples.py",
     "test_bench_command.py",
+    "test_accuracy_estimate.py",
+    "test_transport_correction.py",
     "test_spoilt_captures.py",
     "test_long_run.py",
     "test_commands_run.py",
-    "test_mesh_walk.py",
-    "test_real_meshes.py",
-    "test_accuracy_estimate.py",
     "test_measured_error.py",
-    "test_repair.py",
     "test_correction.py",
     "test_stability.py",
     "test_accuracy_radiance.py",

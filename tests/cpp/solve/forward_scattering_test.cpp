@@ -115,9 +115,7 @@ TEST_CASE("what leaves is that of random walks with the whole phase function, wh
     scene.simulation.set_material(forwards(glm::vec3(g)));
     SolveReport report = scene.simulation.solve(swept(3));
     const glm::dvec2 known = leaving(scene.simulation.surface_field());
-    SolveOptions certifies = swept(3);
-    certifies.certify = 1;
-    scene.simulation.certify(certifies, report, {});
+    scene.simulation.certify(swept(3), report, {});
     const Certificate& found = *report.certificate;
     const double unlit = known.y / (1 + found.unlit.power), missed = std::abs(reduced.y / unlit - 1);
     CHECK(found.whole.power_noise + found.unlit.power_noise < 0.01);

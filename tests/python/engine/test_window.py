@@ -33,6 +33,10 @@ PANEL = 340  # pixels of the panel's width at a scale of 1
 FIELD = 412  # height at which materials are typed
 SIZE = (900, 600)
 LIGHTS = ["--light", "directional:-0.94,-0.1,0.34:1"]  # from azimuth 110
+# Where a test does not say otherwise: a settled picture takes a fifth of the time. No target of --converge, or else a
+# picture at rest goes on changing.
+QUICK = {"--converge": "0", "--samples": "4", "--sweep-points": "1000"}
+QUICK_SCENE = {"picture": {"samples": 4}, "solver": {"sweep_points": 1000}}  # in a scene file
 
 
 class Server(NamedTuple):
@@ -45,9 +49,12 @@ class Server(NamedTuple):
 
 @contextlib.contextmanager
 def display(folder: Path) -> Iterator[Server]:
-    """An X server that draws into a file in the folder, without a pointer in the picture."""
+    """An X server that draws into a file in the folder, without a pointer in the picture.
+
+    A key that is held down does not repeat: the window would have something to do for as long.
+    """
     read, write = os.pipe()
-    screen = ("-screen", "0", "1280x900x24", "-nocursor", "-fbdir", str(folder))
+    screen = ("-screen", "0", "1280x900x24", "-nocursor", "-r", "-fbdir", str(folder))
     server = subprocess.Popen(
         ["Xvfb", "-displayfd", str(write), *screen, "-nolisten", "tcp"],
         pass_fds=[write],
@@ -76,7 +83,7 @@ def screen_of(memory: Path) -> np.ndarray:
     header = np.fromfile(memory, ">u4", 25)
     size, width, height, line, colours = header[[0, 4, 5, 12, 19]].tolist()
     rows = np.fromfile(memory, np.uint8, height * line, offset=size + 12 * colours).reshape(height, line)
-    return rows[:, : 4 * width].reshape(height, width, 4)[..., 2::-1].astype(int)
+    return rows[:, : 4 * width].reshape(height, width, 4)[..., 2::-1]
 
 
 class Patience:
@@ -101,8 +108,8 @@ class Hand:
     def __init__(
         self, server: Server, folder: Path, *arguments: str, body: Path = tiny.PATH, program: tuple[str, ...] = ()
     ):
-        if "--converge" not in arguments and body.suffix != ".json":
-            arguments = (*arguments, "--converge", "0")  # else a picture at rest goes on changing
+        if body.suffix != ".json":
+            arguments += tuple(word for option in QUICK.items() if option[0] not in arguments for word in option)
         self.environment = os.environ | {"DISPLAY": server.name}
         self.environment.pop("WAYLAND_DISPLAY", None)
         self.server = server
@@ -145,18 +152,23 @@ class Hand:
 
     def look(self) -> np.ndarray:
         """What is on the screen, (height, width, 3)."""
-        return screen_of(self.server.memory)
+        return screen_of(self.server.memory).astype(int)
 
     def busy(self) -> bool:
         """Whether it says in its title that the picture is not the converged one."""
         assert self.process.poll() is None, self.process.communicate()
         return self.do("getwindowname", self.window).rstrip().endswith("...")
 
+    def sleeps(self) -> bool:
+        """Whether neither display nor window has anything left to do, in the order in which events go."""
+        return sleeps(self.server.pid) and sleeps(self.process.pid)
+
     def settle(self) -> None:
         """Wait until the last thing done is seen and the picture has converged."""
-        seen = time.monotonic() + 3
-        while not self.busy() and time.monotonic() < seen:
+        seen, quiet = time.monotonic() + 3, 0
+        while not self.busy() and quiet < 4 and time.monotonic() < seen:
             time.sleep(0.02)
+            quiet = quiet + 1 if self.sleeps() else 0  # what is done and changes no picture
         self.calm()
 
     def calm(self) -> None:
@@ -174,16 +186,16 @@ class Hand:
         """
         self.settle()
         patience = self.patience(20)
-        before, quiet = self.look(), 0
+        before, quiet = screen_of(self.server.memory), 0
         while quiet < 3:
             time.sleep(0.1)
-            now = self.look()
+            now = screen_of(self.server.memory)
             seen = now[: SIZE[1], PANEL : SIZE[0]]
             same = seen.any() and np.array_equal(seen, before[: SIZE[1], PANEL : SIZE[0]])
-            quiet = quiet + 1 if same and sleeps(self.process.pid) and sleeps(self.server.pid) else 0
+            quiet = quiet + 1 if same and self.sleeps() and not self.busy() else 0
             assert patience.left(), "no picture is seen, or it changes by itself"
             before = now
-        return now
+        return now.astype(int)
 
     def picture(self) -> np.ndarray:
         """The part without the panel, once it has settled."""

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
+import signal
 import time
 from pathlib import Path
 
 import numpy as np
 import pytest
-from test_window import PANEL, SIZE, Hand, open_window, pytestmark, server
+from test_window import FIELD, PANEL, SIZE, Hand, open_window, pytestmark, server
 
 from baked import write_levels
 from shapes import icosphere
@@ -86,4 +87,19 @@ def test_what_is_changed_amid_a_solve_is_done_at_once(hand: Hand, tmp_path: Path
     assert time.monotonic() - start < whole
     assert json.loads(saved.read_text())["camera"]["azimuth"] == pytest.approx(-7.5 * KEYS)
     hand.calm()
+    hand.close()
+
+
+def test_what_is_done_while_a_picture_is_begun_stays_in_its_order(hand: Hand, tmp_path: Path):
+    """F12 comes together with a click into a field: what follows amid the solve of the picture is typed."""
+    hand.do("mousemove", "150", str(FIELD))
+    hand.settle()
+    hand.process.send_signal(signal.SIGSTOP)
+    typed = ["ctrl+a", *"marble", "Return"]
+    hand.do("keydown", "F12", "mousedown", "1", "mouseup", "1", "keyup", "F12", "key", *typed)
+    hand.process.send_signal(signal.SIGCONT)
+    hand.settle()
+    hand.keys("Escape", "ctrl+s")
+    wait_until((tmp_path / "ball-1.json").exists, hand, "nothing is saved")
+    assert json.loads((tmp_path / "ball-1.json").read_text())["material"] == "marble"
     hand.close()

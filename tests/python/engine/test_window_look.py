@@ -7,7 +7,7 @@ import time
 from pathlib import Path
 
 import numpy as np
-from test_window import PANEL, SIZE, Hand, open_window, pytestmark, server
+from test_window import PANEL, QUICK_SCENE, SIZE, Hand, open_window, pytestmark, server
 
 import tiny
 from baked import write_levels
@@ -35,7 +35,8 @@ def type_file(hand: Hand, name: str) -> None:
 
 
 def test_a_scene_that_is_typed_is_opened_and_what_is_none_changes_nothing(open_window, tmp_path: Path):
-    scene = {"body": str(tiny.PATH), "material": "jade", "camera": {"azimuth": 70}, "picture": {"exposure": 1}}
+    picture = QUICK_SCENE["picture"] | {"exposure": 1}
+    scene = {"body": str(tiny.PATH), "material": "jade", "camera": {"azimuth": 70}, **QUICK_SCENE, "picture": picture}
     (tmp_path / "jade.json").write_text(json.dumps(scene))
     (tmp_path / "torn.json").write_text("{")
     plain = open_window(body=tmp_path / "jade.json")

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 from PIL import Image
-from test_window import SIZE, Hand, open_window, pytestmark, server
+from test_window import QUICK_SCENE, SIZE, Hand, open_window, pytestmark, server
 
 from baked import write_levels
 from quadgraph.mesh.surface import Surface
@@ -105,7 +105,8 @@ def test_a_projector_takes_the_image_that_is_typed(open_window, tmp_path: Path):
         "material": "sigma_s_prime=5,sigma_a=.5",
         "lights": [{**light, "power": 100}],
         "camera": {"elevation": 0},
-        "picture": {"exposure": 2, "background": "black"},
+        "picture": QUICK_SCENE["picture"] | {"exposure": 2, "background": "black"},
+        "solver": QUICK_SCENE["solver"],
     }
     (tmp_path / "lit.json").write_text(json.dumps(scene))
     hand = open_window(body=tmp_path / "lit.json")

@@ -16,7 +16,7 @@ LOOK = ["--material", "sigma_s_prime=2,sigma_a=.3/.1/.1,eta=1.3", "--view", "45,
 
 def test_the_screen_comes_to_what_is_saved_by_any_curve_balance_and_lens(open_window, tmp_path: Path):
     tone = ["--tone", "agx", "--white-balance", "4200", "--exposure", "0.5"]
-    hand = open_window(*LOOK, *tone, "--samples", "24", "--aperture", "0.5")
+    hand = open_window(*LOOK, *tone, "--samples", "12", "--aperture", "0.5")
     seen = hand.picture()
     hand.keys("F12")
     written = tmp_path / "tiny-1.png"
@@ -36,14 +36,16 @@ def test_the_screen_comes_to_what_is_saved_by_any_curve_balance_and_lens(open_wi
 def test_it_is_heard_long_before_all_samples_are_there(open_window):
     """Of 16,384 frames, which would take minutes."""
     hand = open_window(*LOOK, "--samples", "65536")
-    time.sleep(4)
+    time.sleep(2)
+    patience = hand.patience(20)
+    while not (before := hand.look()[: SIZE[1], 340 : SIZE[0]]).any():
+        assert patience.left(), "no picture is seen"
+        time.sleep(0.05)
     assert hand.busy()
-    before = hand.look()[: SIZE[1], 340 : SIZE[0]]
-    assert before.any()
-    begun = time.monotonic()
     hand.keys("m")
+    patience = hand.patience(20)
     while np.abs(hand.look()[: SIZE[1], 340 : SIZE[0]] - before).max() <= 40:
-        assert time.monotonic() < begun + 10, "the material does not change"
+        assert patience.left(), "the material does not change"
         time.sleep(0.05)
     assert hand.busy()
     hand.close()
@@ -51,7 +53,7 @@ def test_it_is_heard_long_before_all_samples_are_there(open_window):
 
 def test_a_picture_is_saved_whatever_the_user_does_meanwhile(open_window, tmp_path: Path):
     """Its solve takes a while, and other solves end where a key is pressed."""
-    hand = open_window(*LOOK, "--correction", "--sweeps", "1", "--sweep-points", "60000")
+    hand = open_window(*LOOK, "--correction", "--sweeps", "1", "--sweep-points", "20000")
     hand.picture()
     hand.keys("m", "F12")
     written = tmp_path / "tiny-1.exr"
