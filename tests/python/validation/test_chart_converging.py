@@ -152,8 +152,8 @@ def test_on_the_chart_they_are_on_the_default_bake_alone():
 def with_stated(tmp_path) -> Path:
     """A record with two points that state of themselves less, and more, than is true."""
     told = record(("bunny",))
-    view = {"error": {"whole": 0.015}, "solves": 5, "sweeps": 3, "seconds": 9.0, "noise": 0.01}
-    for asked, stated in ((0.04, 0.03), (0.01, 0.06)):
+    view = {"error": {"whole": 0.03}, "solves": 5, "sweeps": 3, "seconds": 9.0, "noise": 0.01}
+    for asked, stated in ((0.04, 0.015), (0.01, 0.06)):
         one = point("converging picture", 0, 90 / asked, 0.01)
         one["settings"] |= {"bake": "default", "converge": asked}
         one["stated"] = {"whole": stated, "views": {"A": view}}
@@ -166,7 +166,7 @@ def with_stated(tmp_path) -> Path:
 def test_bars_go_from_true_errors_to_stated_ones_in_the_panel_of_pictures(with_stated):
     whole, unlit = records.panels(records.read(with_stated)["scenes"][0])[2:4]
     own = [(true, said) for true, said in zip(whole.errors, whole.stated, strict=True) if true != said]
-    assert sorted(own) == [(0.015, 0.03), (0.015, 0.06)]
+    assert sorted(own) == [(0.03, 0.015), (0.03, 0.06)]
     assert unlit.stated == unlit.errors
 
 
