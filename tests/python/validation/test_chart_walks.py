@@ -153,7 +153,7 @@ def test_coefficients_of_walks_are_those_of_the_scene():
     expected = scene.coefficients(place)
     assert medium.sigma_s_prime[tuple(index)] == pytest.approx(float(expected[0]), rel=1e-6)
     assert medium.sigma_a[tuple(index)] == pytest.approx(float(expected[1]), rel=1e-6)
-    assert scene_walks.medium_of(SCENES["sphere"], surface, 0).even
+    assert scene_walks.medium_of(replace(SCENES["sphere"], height=1000.0), surface, 0).even
 
 
 def test_walks_on_the_chart_are_on_the_default_bake_alone():
