@@ -37,13 +37,21 @@ ROOT = Path(__file__).resolve().parents[2]
 # Files that take longest, in about this order: begun first, so that no worker is left with one of them at the end, and
 # those that wait for windows beside others.
 LONGEST = (
+    "test_lamp_finding.py",
     "test_bake.py",
     "test_window_preview.py",
     "test_wrap.py",
     "test_window_hearing.py",
     "test_accuracy_unseen.py",
     "test_volume_recovery.py",
+    "test_body_indices.py",
     "test_window.py",
+    "test_projector.py",
+    "test_session_import.py",
+    "test_window_converging.py",
+    "test_interior.py",
+    "test_rough_transmission.py",
+    "test_chart_converging.py",
     "test_acquire.py",
     "test_window_look.py",
     "test_repair.py",

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from baked import write_levels
+from chart_bodies import Baked, ball, chart_ball
 from chart_records import point, record
 from quadgraph import cli
 from quadgraph_validation.bodies.scene_bakes import Choice
-from quadgraph_validation.bodies.scenes import PIXELS, StudyScene, View, of_medium
+from quadgraph_validation.bodies.scenes import PIXELS, View
 from quadgraph_validation.chart import chart_measure as measuring
 from quadgraph_validation.chart import chart_page, static_chart
 from quadgraph_validation.chart import chart_record as records
@@ -23,34 +22,17 @@ from quadgraph_validation.chart.chart_method import MethodChain, pde_of, walks_j
 from quadgraph_validation.chart.converging_method import ERRORS, ConvergingMethod, converging_methods
 from quadgraph_validation.chart.engine_methods import EngineMethod
 from quadgraph_validation.truth.stored_truth import StoredTruth
-from shapes import icosphere
 
 pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
 
-RADIUS = 10.0  # mm
+__all__ = ["ball"]
+
 VIEWS = {"A": View(70, 15, 46, ()), "B": View(160, 15, 46, ())}
-BALL = StudyScene("ball", "", 1.3, of_medium([0.18] * 3, [0.061] * 3), 4.0, (0.0, 0.0, -1.0), VIEWS, 2 * RADIUS)
-
-
-class Baked:
-    """A bake that is there."""
-
-    def __init__(self, path: Path):
-        self.path = path
-
-    def made(self) -> Path:
-        return self.path
-
-
-@pytest.fixture(scope="module")
-def ball(tmp_path_factory) -> Path:
-    path = tmp_path_factory.mktemp("converging") / "ball.qgraph"
-    return write_levels(path, [icosphere(3, RADIUS), icosphere(2, RADIUS)])
+BALL = chart_ball(VIEWS)
 
 
 def body_of(ball: Path) -> ChartBody:
-    scene = replace(BALL, coloured=True)
-    return ChartBody(scene, ball, ball.parent, "cpu", 2 * PIXELS, {Choice(): Baked(ball)})
+    return ChartBody(BALL, ball, ball.parent, "cpu", 2 * PIXELS, {Choice(): Baked(ball)})
 
 
 @pytest.fixture

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-from baked import write_levels
+from chart_bodies import Baked, ball, chart_ball
 from chart_records import point, record
 from quadgraph import cli
 from quadgraph.base.errors import SolverError
 from quadgraph_validation.bodies.scene_bakes import Choice
-from quadgraph_validation.bodies.scenes import SCENES, StudyScene, View, of_medium
+from quadgraph_validation.bodies.scenes import SCENES, View, of_medium
 from quadgraph_validation.chart import chart_measure as measuring
 from quadgraph_validation.chart import chart_record as records
 from quadgraph_validation.chart import equal_error
@@ -29,26 +28,9 @@ _core = pytest.importorskip("quadgraph._core", reason="the compiled engine is no
 pytest.importorskip("numba", reason="needs the extra walks")
 scene_walks = pytest.importorskip("quadgraph_validation.truth.scene_walks")
 
-RADIUS = 10.0  # mm
-BALL = StudyScene(
-    "ball", "", 1.3, of_medium([0.18] * 3, [0.061] * 3), 4.0, (0.0, 0.0, -1.0), {"A": View(70, 15, 46, ())}, 20.0, True
-)
+__all__ = ["ball"]
 
-
-class Baked:
-    """A bake that is there."""
-
-    def __init__(self, path: Path):
-        self.path = path
-
-    def made(self) -> Path:
-        return self.path
-
-
-@pytest.fixture(scope="module")
-def ball(tmp_path_factory) -> Path:
-    path = tmp_path_factory.mktemp("walks") / "ball.qgraph"
-    return write_levels(path, [icosphere(3, RADIUS), icosphere(2, RADIUS)])
+BALL = chart_ball({"A": View(70, 15, 46, ())})
 
 
 @pytest.fixture
@@ -59,7 +41,7 @@ def body(ball) -> ChartBody:
 @pytest.fixture(scope="module")
 def walks(ball):
     surface = ChartBody(BALL, ball, ball.parent, "cpu", 32, {Choice(): Baked(ball)}).default_surface
-    return scene_walks.walked(BALL, surface, 100_000, lambda text: None)
+    return scene_walks.walked(BALL, surface, scene_walks.media_of(BALL, surface), 100_000, lambda text: None)
 
 
 def test_an_exitance_that_is_right_has_no_error_and_another_has_its_own(walks):
@@ -78,7 +60,9 @@ def test_an_exitance_that_is_right_has_no_error_and_another_has_its_own(walks):
 
 def test_noise_of_the_walks_is_no_error_of_what_is_judged(body, walks):
     """Of two runs of the same walks, one judged by the other, about the noise of one is left, not of both."""
-    other = scene_walks.walked(BALL, body.default_surface, 50_000, lambda text: None)
+    surface = body.default_surface
+    media = scene_walks.media_of(BALL, surface)
+    other = scene_walks.walked(BALL, surface, media, 50_000, lambda text: None)
     left = walks.errors(other.exitance[walks.patch])["whole"]
     assert 0.7 < left / other.noise["whole"] < 1.3
 
@@ -147,13 +131,13 @@ def test_walks_are_kept_under_all_that_enters_them(body, tmp_path, monkeypatch):
 def test_coefficients_of_walks_are_those_of_the_scene():
     surface = icosphere(3, 50.0)
     scene = replace(SCENES["fertility"], height=1000.0)  # cells of 8 mm
-    medium = scene_walks.medium_of(scene, surface, 0)
+    (medium,) = scene_walks.media_of(scene, surface)
     index = np.array([4, 6, 5])  # z, y, x
     place = np.array(medium.first) + medium.spacing * index[::-1]
     expected = scene.coefficients(place)
     assert medium.sigma_s_prime[tuple(index)] == pytest.approx(float(expected[0]), rel=1e-6)
     assert medium.sigma_a[tuple(index)] == pytest.approx(float(expected[1]), rel=1e-6)
-    assert scene_walks.medium_of(replace(SCENES["sphere"], height=1000.0), surface, 0).even
+    assert all(each.even for each in scene_walks.media_of(replace(SCENES["sphere"], height=1000.0), surface))
 
 
 def test_walks_on_the_chart_are_on_the_default_bake_alone():

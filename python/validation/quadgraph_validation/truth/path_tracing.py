@@ -69,8 +69,8 @@ def load_mitsuba(variant: str = SCALAR) -> Any:
         raise InputError(f"Mitsuba: version {mitsuba.__version__} found, the truth is made with {MITSUBA}")
     if variant != SCALAR and not _runs(variant):
         raise InputError(
-            f"Mitsuba: variant {variant}: a first picture ended its process; llvm variants want LLVM 17 or later, "
-            "whose libLLVM.so $DRJIT_LIBLLVM_PATH can name"
+            f"Mitsuba: variant {variant}: a first picture ended its process; llvm variants want a newer LLVM "
+            "(19 runs), whose libLLVM.so $DRJIT_LIBLLVM_PATH can name"
         )
     mitsuba.set_variant(variant)
     return mitsuba

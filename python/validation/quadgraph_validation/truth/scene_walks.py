@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -82,18 +82,21 @@ def made(scene: StudyScene, surface: Surface, folder: Path, tell: Callable[[str]
 
     Raises InputError without Numba.
     """
-    key = _key(scene, surface)
+    media = media_of(scene, surface)
+    key = _key(scene, surface, media)
     path = folder / f"{scene.name}-exitance-{store.digest(key)[:12]}.npz"
     if not path.exists():
         extra_module.load("numba", "walks")
         folder.mkdir(parents=True, exist_ok=True)
-        found = walked(scene, surface, WALKS, tell)
+        found = walked(scene, surface, media, WALKS, tell)
         store.save(path, key, {name: getattr(found, name) for name in _ARRAYS})
     return SceneWalks(**store.load(path, key, _ARRAYS, "random walks"))
 
 
-def walked(scene: StudyScene, surface: Surface, walks: int, tell: Callable[[str], None]) -> SceneWalks:
-    """By so many walks in each channel."""
+def walked(
+    scene: StudyScene, surface: Surface, media: Sequence[UnseenMedium], walks: int, tell: Callable[[str], None]
+) -> SceneWalks:
+    """By so many walks in each channel, through the medium of each."""
     from quadgraph_validation.truth.mesh_walk import MeshWalker
 
     patch = patches_of(surface)
@@ -101,8 +104,8 @@ def walked(scene: StudyScene, surface: Surface, walks: int, tell: Callable[[str]
     area = np.bincount(patch, face_area)
     light = as_light(scene.light)
     entered, scattered = [], []
-    for channel in range(3 if scene.coloured else 1):
-        walker = MeshWalker(surface, medium_of(scene, surface, channel), light, patch)
+    for channel, medium in enumerate(media):
+        walker = MeshWalker(surface, medium, light, patch)
         batches = []
         for number in range(BATCHES):
             tell(f"{scene.name}: random walks, channel {channel + 1}, batch {number + 1} of {BATCHES}")
@@ -114,27 +117,28 @@ def walked(scene: StudyScene, surface: Surface, walks: int, tell: Callable[[str]
     return SceneWalks(patch, face_area, np.stack(entered, axis=-1).mean(axis=0), by_batch.mean(axis=0), error)
 
 
-def medium_of(scene: StudyScene, surface: Surface, channel: int) -> UnseenMedium:
-    """What fills a scene's body in a channel: one cell where it is the same everywhere, else a fine grid."""
+def media_of(scene: StudyScene, surface: Surface) -> list[UnseenMedium]:
+    """What fills a scene's body in each channel: one cell where it is the same everywhere, else a fine grid."""
     low, high = surface.vertices.min(axis=0), surface.vertices.max(axis=0)
     spacing = scene.height / _CELLS
     counts = np.ceil((high - low) / spacing).astype(int) + 1
     axes = [low[k] + spacing * np.arange(counts[k]) for k in (2, 1, 0)]
     z, y, x = np.meshgrid(*axes, indexing="ij")
-    values = scene.coefficients(np.stack([x, y, z], axis=-1))
-    of_channel = (np.asarray(v[..., channel] if scene.coloured else v, np.float32) for v in values)
-    scattering, absorption = of_channel
-    if all((grid == grid.flat[0]).all() for grid in (scattering, absorption)):
-        scattering, absorption = scattering[:1, :1, :1], absorption[:1, :1, :1]
     first = (float(low[0]), float(low[1]), float(low[2]))
-    return UnseenMedium("scene", scene.eta, scattering, absorption, first, spacing)
+    values = scene.coefficients(np.stack([x, y, z], axis=-1))
+    media = []
+    for channel in range(3) if scene.coloured else (slice(None),):
+        scattering, absorption = (np.asarray(v[..., channel], np.float32) for v in values)
+        if all((grid == grid.flat[0]).all() for grid in (scattering, absorption)):
+            scattering, absorption = scattering[:1, :1, :1], absorption[:1, :1, :1]
+        media.append(UnseenMedium("scene", scene.eta, scattering, absorption, first, spacing))
+    return media
 
 
-def _key(scene: StudyScene, surface: Surface) -> dict[str, Any]:
+def _key(scene: StudyScene, surface: Surface, media: Sequence[UnseenMedium]) -> dict[str, Any]:
     """Everything that enters them."""
     digest = hashlib.sha256()
-    for channel in range(3 if scene.coloured else 1):
-        medium = medium_of(scene, surface, channel)
+    for medium in media:
         for values in (medium.sigma_s_prime, medium.sigma_a, np.array([*medium.first, medium.spacing])):
             digest.update(repr(values.shape).encode() + np.ascontiguousarray(values).tobytes())
     body = hashlib.sha256(surface.vertices.tobytes() + surface.triangles.tobytes()).hexdigest()
