@@ -6,6 +6,7 @@
 #include <imgui.h>
 #include <imgui_internal.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "engine/base/error.h"
@@ -161,20 +162,31 @@ void Interface::start_backend() {
 
 void Interface::begin(const std::vector<Event>& events) {
   GLFWwindow* window = window_.handle();
+  const auto ratio = static_cast<double>(window_.pixels_per_unit());
   for (const Event& event : events) {
     if (const auto* key = std::get_if<KeyEvent>(&event)) {
       ImGui_ImplGlfw_KeyCallback(window, key->key, key->scancode, key->action, key->mods);
     } else if (const auto* text = std::get_if<TextEvent>(&event)) {
       ImGui_ImplGlfw_CharCallback(window, text->character);
-    } else if (const auto* button = std::get_if<ButtonEvent>(&event)) {
-      ImGui_ImplGlfw_MouseButtonCallback(window, button->button, button->action, button->mods);
+    } else if (const auto* button = std::get_if<ButtonEvent>(&event); button != nullptr && button->button < buttons) {
+      down_[static_cast<std::size_t>(button->button)] = button->action == GLFW_PRESS;
+    } else if (const auto* motion = std::get_if<MotionEvent>(&event)) {
+      pointer_ = {motion->x / ratio, motion->y / ratio};
     } else if (const auto* scroll = std::get_if<ScrollEvent>(&event)) {
       ImGui_ImplGlfw_ScrollCallback(window, scroll->x, scroll->y);
     }
   }
   ImGui_ImplVulkan_NewFrame();
   ImGui_ImplGlfw_NewFrame();
+  point();
   ImGui::NewFrame();
+}
+
+// The pointer as it was when what the frame sees happened, where the backend has it as it is now.
+void Interface::point() const {
+  ImGuiIO& io = ImGui::GetIO();
+  std::copy(down_.begin(), down_.end(), io.MouseDown);
+  if (window_.events_wait()) io.MousePos = {static_cast<float>(pointer_.x), static_cast<float>(pointer_.y)};
 }
 
 bool Interface::has_pointer() const {

@@ -1,6 +1,7 @@
 // Dear ImGui in our window: input to it, and what it draws onto a frame.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "engine/app/window.h"
@@ -38,12 +39,16 @@ class Interface {
   void create_pool();
   void load_fonts(float scale);
   void start_backend();
+  void point() const;
   void follow_swapchain();
 
   Window& window_;
   vk::Context& context_;
   const vk::Swapchain& swapchain_;
   float unit_ = 1;
+  static constexpr int buttons = 3;      // of a mouse, that widgets know
+  std::array<bool, buttons> down_ = {};  // as the last frame saw them
+  MotionEvent pointer_ = {};             // in window coordinates
   vk::UniqueDescriptorPool pool_;
   vk::UniqueRenderPass pass_;
   std::uint64_t generation_ = 0;  // of the swapchain that the framebuffers are of

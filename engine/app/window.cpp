@@ -4,7 +4,6 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
-#include <set>
 
 #include "engine/base/error.h"
 
@@ -186,23 +185,6 @@ void Window::poll(double wait_seconds) {
   } else {
     glfwPollEvents();
   }
-}
-
-std::vector<Event> Window::take_events() {
-  std::vector<Event> taken;
-  std::set<int> keys, buttons;
-  bool moved = false;
-  while (!events_.empty()) {
-    const Event& next = events_.front();
-    const auto* key = std::get_if<KeyEvent>(&next);
-    const auto* button = std::get_if<ButtonEvent>(&next);
-    if (key != nullptr && (!buttons.empty() || !keys.insert(key->key).second)) break;
-    if (button != nullptr && (moved || !buttons.insert(button->button).second)) break;
-    moved = moved || std::holds_alternative<MotionEvent>(next);
-    taken.push_back(next);
-    events_.pop_front();
-  }
-  return taken;
 }
 
 }  // namespace quadgraph

@@ -3,38 +3,15 @@
 
 #include <cstdint>
 #include <deque>
-#include <filesystem>
 #include <string>
-#include <variant>
 #include <vector>
 
+#include "engine/app/events.h"
 #include "engine/vk/context.h"
 
 struct GLFWwindow;
 
 namespace quadgraph {
-
-// In the order in which they happened; numbers as GLFW has them.
-struct KeyEvent {
-  int key, scancode, action, mods;
-};
-struct TextEvent {
-  unsigned int character;
-};
-struct ButtonEvent {
-  int button, action, mods;
-};
-struct MotionEvent {
-  double x, y;  // pixels from the upper left corner
-};
-struct ScrollEvent {
-  double x, y;  // steps
-};
-struct DropEvent {
-  std::filesystem::path file;  // the first of those that were dropped
-};
-struct ShowEvent {};  // the window is seen anew, has another size or focus, or is to close: it must be drawn
-using Event = std::variant<KeyEvent, TextEvent, ButtonEvent, MotionEvent, ScrollEvent, DropEvent, ShowEvent>;
 
 class Window {
  public:
@@ -69,10 +46,8 @@ class Window {
   // Collects what has happened, after waiting for something at most so many seconds.
   void poll(double wait_seconds);
 
-  // What has happened and has not been taken yet, up to what must be left for the next frame because Dear ImGui 1.86
-  // looks at keys and pointer once a frame: a key or button that changes again, a button after a motion, and a key
-  // after a button, which may go to what that has opened.
-  std::vector<Event> take_events();
+  // What of it the next frame may see.
+  std::vector<Event> take_events() { return take_frame(events_); }
 
   // Whether there is anything to take.
   bool events_wait() const { return !events_.empty(); }

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 from test_window import PANEL, SIZE, open_window, pytestmark, server
-from test_window_panel import PAINT, RADIUS, TALL, press
+from test_window_panel import PAINT, RADIUS, TALL, press, put
 
 from baked import write_levels
 from shapes import icosphere
@@ -43,9 +43,7 @@ def test_two_layers_are_painted_and_one_is_hidden_and_shown(open_window, tmp_pat
         return float((before - now)[rows, column - 8 : column + 8, 1:].mean())
 
     press(hand, PAINT)
-    press(hand, RADIUS, "ctrl")  # which selects what is there
-    hand.do("sleep", "0.2", "type", "--delay", "30", "2")
-    hand.keys("Return", "Escape")
+    put(hand, RADIUS, "2", "ctrl")
     press(hand, MIRROR)
     press(hand, LEFT_RIGHT)
     before = picture()
