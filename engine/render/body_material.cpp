@@ -127,10 +127,9 @@ void Engine::set_materials(std::span<const BodyMaterial> given) {
   self.paths.clear();
   self.material = text_of(materials, bodies);
   self.certainty = {};
-  self.eta = std::move(eta);
   self.body_roughness.emplace(self.device, self.graph, materials);
   self.index_warning = index_warning(given, bodies, self.graph.outermost());
-  self.stale();
+  self.set_index(std::move(eta));
 }
 
 }  // namespace quadgraph

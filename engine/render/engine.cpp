@@ -53,8 +53,7 @@ void Engine::set_material(const gpu::Material& material) {
   self.material = material_text(material);
   self.certainty = {};
   self.body_roughness.reset();
-  self.eta = {material.eta};
-  self.stale();
+  self.set_index({material.eta});
 }
 
 void Engine::set_optical(std::uint32_t level, std::span<const gpu::Optical> optical, float eta,
@@ -66,8 +65,7 @@ void Engine::set_optical(std::uint32_t level, std::span<const gpu::Optical> opti
   self.material = "coefficients per node, eta=" + number_text(eta);
   self.certainty = {};
   self.body_roughness.reset();
-  self.eta = {eta};
-  self.stale();
+  self.set_index({eta});
 }
 
 void Engine::set_optical(const OpticalGrid& grid) {
@@ -79,8 +77,7 @@ void Engine::set_optical(const OpticalGrid& grid) {
   self.material = "coefficients on a grid, eta=" + number_text(grid.eta);
   self.certainty = {};
   self.body_roughness.reset();
-  self.eta = {grid.eta};
-  self.stale();
+  self.set_index({grid.eta});
 }
 
 void Engine::set_certainty(Certainty certainty) {

@@ -157,6 +157,13 @@ struct Engine::Implementation {
     irradiance_stale = irradiance_stale || !lights.empty();
   }
 
+  // Of the material. What enters the surface depends on the index of refraction alone.
+  void set_index(std::vector<float> found) {
+    if (found == eta) return;
+    eta = std::move(found);
+    stale();
+  }
+
   // Shadow maps of the present lights.
   LightSet cast_shadows() {
     images.set_eta(different_indices(eta));

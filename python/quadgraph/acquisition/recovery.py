@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,7 @@ from quadgraph.acquisition.causes import diagnosis, outlines
 from quadgraph.acquisition.homogeneous import start
 from quadgraph.acquisition.homogeneous.fitting import OUTER, Fit, fit
 from quadgraph.acquisition.model import prediction
-from quadgraph.acquisition.model.prediction import CHANNELS, NAMES, Predictor
+from quadgraph.acquisition.model.prediction import CHANNELS, NAMES, Predictor, SpreadSolves
 from quadgraph.acquisition.model.problem import Problem
 from quadgraph.acquisition.volume import volume_report
 from quadgraph.acquisition.volume.fit_state import StateFolder
@@ -111,11 +112,13 @@ def recover(
     device: str = "",
     validation: bool = False,
     resume: Path | None = None,
+    spread: SpreadSolves | None = None,
 ) -> Recovered:
     """Recover the coefficients. corrected: predict by the engine with its correction to transport; volume: how those
     that differ from place to place are looked for, None for the same throughout; advance: is called with the share of
     the work done so far, 0 to 1, after each solve; device, validation: as `Stage` takes them; resume: a folder in which
-    the state of a fit of a volume is kept after each outer step, and from which it goes on.
+    the state of a fit of a volume is kept after each outer step, and from which it goes on; spread: makes corrected
+    predictions elsewhere, each set of lights by itself.
 
     Raises InputError, FormatError, SolverError, DeviceError.
     """
@@ -126,13 +129,11 @@ def recover(
         )
     measured = photographs.read_all(capture)
     with _body(capture, tell) as body:
+        engine = partial(Predictor, body=body, device=device, validation=validation, spread=spread)
         if volume is None:
-            found = _throughout(
-                capture, measured, Predictor(capture, body, device, validation), corrected, tell, advance
-            )
+            found = _throughout(capture, measured, engine(capture), corrected, tell, advance)
         else:
             states = StateFolder(resume, capture, f"{corrected} {volume}") if resume else None
-            engine = body, device, validation
             found = _by_place(capture, measured, engine, corrected, volume, states, tell, advance)
     advance(1.0)
     return found
@@ -176,7 +177,7 @@ def _fitted(
 def _by_place(
     capture: Capture,
     measured: list[Measured],
-    engine: tuple[Path, str, bool],
+    engine: Callable[[Capture], Predictor],
     corrected: bool,
     options: VolumeOptions,
     states: StateFolder | None,
@@ -185,11 +186,11 @@ def _by_place(
 ) -> Recovered:
     """Coefficients that differ from place to place, from homogeneous ones of some of the photographs on.
 
-    engine: body, device and validation.
+    engine: predicts a capture of the body.
     """
     kept = states.read() if states else None
     same = kept.start if kept else _of_some(capture, measured, engine, tell, lambda share: advance(0.2 * share))
-    predictor = Predictor(capture, *engine)
+    predictor = engine(capture)
     first = predictor.predict(same, False)
     prediction.check_seen(capture, predictor.box_mm, first)
     outlines.check_masks(capture, measured, first)
@@ -211,7 +212,7 @@ def _by_place(
 def _of_some(
     capture: Capture,
     measured: list[Measured],
-    engine: tuple[Path, str, bool],
+    engine: Callable[[Capture], Predictor],
     tell: ProgressCallback,
     advance: Callable[[float], None],
 ) -> np.ndarray:
@@ -219,7 +220,7 @@ def _of_some(
     few = _some_lights(capture)
     some = [one for one in measured if one.stated in few.photographs]
     tell(f"the same coefficients throughout, from {len(some)} of {len(measured)} photographs")
-    _, found = _fitted(few, some, Predictor(few, *engine), False, _STEPS, tell, advance)
+    _, found = _fitted(few, some, engine(few), False, _STEPS, tell, advance)
     return found.coefficients
 
 

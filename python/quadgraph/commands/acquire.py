@@ -7,16 +7,20 @@ Finds absorption and reduced scattering of red, green and blue, with their stand
 from __future__ import annotations
 
 import argparse
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from quadgraph.acquisition.volume.volume_options import PUBLISHED, SCHEMES, TOTAL_VARIATION, VolumeOptions
 from quadgraph.base.arguments import add_device_arguments, up_to
 from quadgraph.base.errors import InputError
-from quadgraph.work.schedulers import add_scheduler_argument, check_several
+from quadgraph.base.progress import ProgressCallback
+from quadgraph.work.finished_tasks import LEDGER
+from quadgraph.work.schedulers import StayingWorkers, add_scheduler_argument, check_several
 
 if TYPE_CHECKING:
     from quadgraph.acquisition.recovery import Recovered
+    from quadgraph.commands.light_tasks import LightTasks
 
 DISAGREES = 3  # exit code
 
@@ -35,7 +39,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         required=True,
         help="the .npz to write, as --material takes it; of several captures the folder for them",
     )
-    add_scheduler_argument(parser, "several captures")
+    add_scheduler_argument(parser, "several captures, or the lights of one,")
     parser.add_argument(
         "--volume", action="store_true", help="find coefficients that differ from place to place; takes minutes"
     )
@@ -110,7 +114,9 @@ def run(args: argparse.Namespace) -> int:
 
         volume = VolumeOptions(args.spacing, args.scheme or TOTAL_VARIATION) if args.volume else None
         device = args.device, args.validation
-        found = recover(stated, args.correction, volume, tell, advance, *device, args.resume)
+        with ExitStack() as until:
+            spread = _spread(args, until, tell) if args.scheduler else None
+            found = recover(stated, args.correction, volume, tell, advance, *device, args.resume, spread)
     found.material.save(args.output)
     if args.json:
         atomic_file.write_json(args.json, found.report())
@@ -122,9 +128,17 @@ def run(args: argparse.Namespace) -> int:
     return 0 if is_settled(found) else DISAGREES
 
 
+def _spread(args: argparse.Namespace, until: ExitStack, tell: ProgressCallback) -> LightTasks:
+    from quadgraph.commands.light_tasks import LightTasks
+
+    workers = StayingWorkers(args.scheduler, until)
+    return LightTasks(workers, args.output.parent / LEDGER, args.device, args.validation, tell)
+
+
 def _check(args: argparse.Namespace) -> None:
     """Raise InputError for options that do not go together."""
-    check_several(args, len(args.file) > 1, "several captures are wanted")
+    spread = len(args.file) > 1 or (args.correction and args.scheme != PUBLISHED)
+    check_several(args, spread, "several captures are wanted, or one whose predictions are corrected")
     if len(args.file) == 1 and args.output.suffix.lower() != ".npz":
         raise InputError(f"{args.output}: output must end in .npz")
     if args.report and args.report.suffix.lower() != ".html":

@@ -7,7 +7,7 @@ import importlib.util
 import os
 import re
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -46,6 +46,22 @@ class Scheduler:
         asked = self.count, memory, threads
         with dask_workers.on_this_machine(*asked, tell) if by_dask else own_processes.started(*asked) as workers:
             yield workers
+
+
+class StayingWorkers:
+    """Those of a scheduler, who stay between one run of tasks and the next."""
+
+    def __init__(self, scheduler: Scheduler, until: ExitStack) -> None:
+        """until: ends them."""
+        self._scheduler, self._until = scheduler, until
+        self._found: DaskWorkers | OwnProcesses | None = None
+
+    @contextmanager
+    def workers(self, tell: ProgressCallback) -> Iterator[DaskWorkers | OwnProcesses]:
+        """As `Scheduler.workers`, started where they are first wanted."""
+        if self._found is None:
+            self._found = self._until.enter_context(self._scheduler.workers(tell))
+        yield self._found
 
 
 def scheduler(text: str) -> Scheduler:

@@ -3,27 +3,39 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 from quadgraph.base.errors import ToolError
 from quadgraph.work import finished_tasks
-from quadgraph.work.schedulers import Scheduler
+from quadgraph.work.schedulers import Scheduler, StayingWorkers
 from quadgraph.work.task import Task, key_of
 
 _SAID = 3  # failures that an error repeats
 _AGAIN = "what is finished is kept, and the same command goes on from there"
 
 
-def run_tasks(tasks: Sequence[Task], scheduler: Scheduler, ledger: Path) -> list[Any]:
+class Progressing(Protocol):
+    """Who is told how tasks come along."""
+
+    def say(self, text: str) -> None:
+        """What workers do, a line."""
+
+    def advance(self, text: str) -> None:
+        """One more task is finished, and what is to be said of it."""
+
+
+def run_tasks(
+    tasks: Sequence[Task], scheduler: Scheduler | StayingWorkers, ledger: Path, told: Progressing | None = None
+) -> list[Any]:
     """The values of tasks in their order; those that `ledger` has are not run again.
 
-    Progress is told on standard error. All others are finished where one fails. Raises ToolError, naming those that
-    failed, and what starting workers raises.
+    told: of progress, None: standard error. All others are finished where one fails. Raises ToolError, naming those
+    that failed, and what starting workers raises.
     """
     contents = [task.content() for task in tasks]
     keys = [key_of(content) for content in contents]
@@ -32,7 +44,10 @@ def run_tasks(tasks: Sequence[Task], scheduler: Scheduler, ledger: Path) -> list
     orders = {key: task.order(ledger) for key, task in zip(keys, tasks, strict=True) if key not in values}
     names = {key: task.name for key, task in zip(keys, tasks, strict=True)}
     failures: list[str] = []
-    with _told(len(names), len(values)) as progress:
+    with nullcontext(told) if told else _told(len(names), len(values)) as progress:
+        if told:
+            for key in values:
+                told.advance(f"{names[key]}: finished already")
         if orders:
             try:
                 values |= _made(orders, names, scheduler, progress, failures)
@@ -46,7 +61,11 @@ def run_tasks(tasks: Sequence[Task], scheduler: Scheduler, ledger: Path) -> list
 
 
 def _made(
-    orders: dict[str, str], names: dict[str, str], scheduler: Scheduler, progress: TaskProgress, failures: list[str]
+    orders: dict[str, str],
+    names: dict[str, str],
+    scheduler: Scheduler | StayingWorkers,
+    progress: Progressing,
+    failures: list[str],
 ) -> dict[str, Any]:
     values = {}
     with scheduler.workers(progress.say) as workers:

@@ -124,7 +124,7 @@ def test_several_captures_are_checked_before_any(tmp_path, capsys):
     for arguments, words in (
         ([*twice, "-o", "out", "--report", "page.html"], "--report: found with several captures"),
         ([*twice, "-o", "out"], "two of them would be written to one file"),
-        ([twice[0], "-o", "out.npz", *TWO], "several captures are wanted"),
+        ([twice[0], "-o", "out.npz", "--no-correction", *TWO], "several captures are wanted"),
     ):
         assert cli.main(["acquire", *arguments]) == 1
         assert words in capsys.readouterr().err

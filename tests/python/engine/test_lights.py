@@ -201,3 +201,30 @@ def test_more_lights_than_a_scene_may_have_are_refused(tmp_path):
     with pytest.raises(InputError, match="lights: found 1025, allowed are at most 1024"):
         engine.set_lights(["directional:0,0,-1:1"] * 1025)
     engine.set_lights(["directional:0,0,-1:1"] * 1024)
+
+
+def test_the_light_that_enters_is_taken_again_where_the_index_of_refraction_is_another(files):
+    """Of nothing else in a material it depends: with the same index no pass of it runs, its times are those before."""
+    lights = ["point:0,30,20:100", "ambient:.02"]
+
+    def times(engine) -> list[float]:
+        return [entry["time_ms"] for entry in engine.passes if entry["name"] == "irradiance"]
+
+    def fresh(material: str) -> np.ndarray:
+        other = _core.Engine(files["sphere"], device="cpu")
+        other.set_material(material)
+        other.set_lights(lights)
+        other.solve(tolerance=1e-5)
+        return other.surface_field()["exitance"]
+
+    engine = _core.Engine(files["sphere"], device="cpu")
+    engine.set_material("sigma_s_prime=1,sigma_a=.01,eta=1.3")
+    engine.set_lights(lights)
+    engine.solve(tolerance=1e-5)
+    first = times(engine)
+    assert first
+    for material, same in (("sigma_s_prime=3,sigma_a=.1,eta=1.3", True), ("sigma_s_prime=3,sigma_a=.1,eta=1.5", False)):
+        engine.set_material(material)
+        engine.solve(tolerance=1e-5)
+        assert (times(engine) == first) == same
+        np.testing.assert_allclose(engine.surface_field()["exitance"], fresh(material), rtol=1e-3)

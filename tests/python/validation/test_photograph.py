@@ -77,6 +77,25 @@ def scene(tmp_path) -> Path:
     return path
 
 
+def test_workers_take_the_same_photographs(scene, tmp_path):
+    one, spread = (tmp_path / name / "photos.json" for name in ("one", "spread"))
+    for path in (one, spread):
+        path.parent.mkdir()
+        more = ["--scheduler", "processes:2"] if path == spread else []
+        asked = ["photograph", str(scene), "--capture", str(path), "--walks", "9", "--seed", "5"]
+        assert main([*asked, *more]) == 0
+    names = sorted(path.name for path in one.parent.iterdir())
+    assert len(names) == 6
+    for name in names:
+        assert (spread.parent / name).read_bytes() == (one.parent / name).read_bytes()
+
+
+def test_what_the_engine_photographs_is_not_spread(scene, tmp_path, capsys):
+    asked = ["photograph", str(scene), "--capture", str(tmp_path / "photos.json"), "--by", "engine"]
+    assert main([*asked, "--scheduler", "processes:2"]) == 1
+    assert "--scheduler: found with --by engine, allowed with --by walks" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("by", [["--walks", "16"], ["--by", "engine", "--device", "cpu", "--gains", "20%"]])
 def test_a_capture_is_one_that_can_be_read(scene, tmp_path, by, capsys):
     path = tmp_path / "photos.json"

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 from rich.progress import Progress
@@ -16,6 +16,10 @@ from rich.progress import Progress
 from quadgraph.base import outputs
 from quadgraph.base.arguments import positive_int, share
 from quadgraph.base.errors import InputError
+from quadgraph.work.schedulers import add_scheduler_argument
+
+if TYPE_CHECKING:
+    from quadgraph_validation.truth.photographed import PhotographOptions, Radiances, Subject
 
 KINDS = ("walks", "engine")
 _MOST_SIDE, _MOST_BITS = 4096, 24
@@ -70,6 +74,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "--seed", type=positive_int, default=1, metavar="N", help="of all chance (default: %(default)s)"
     )
     parser.add_argument("--device", default="", metavar="NAME", help="of --by engine")
+    add_scheduler_argument(parser, "walks, each view in each channel,")
 
 
 def run(args: argparse.Namespace) -> int:
@@ -80,6 +85,8 @@ def run(args: argparse.Namespace) -> int:
         raise InputError(f"{args.capture}: a capture must end in .json")
     if args.body and args.by != "engine":
         raise InputError("--body: found with --by walks, which go through the scene's own body; leave it out")
+    if args.scheduler and args.by != "walks":
+        raise InputError("--scheduler: found with --by engine, allowed with --by walks")
     found = photographed.subject(args.scene)
     options = photographed.PhotographOptions(
         args.azimuths, args.size, args.walks, args.noise, args.bits, args.blur, args.gains or 0.0, args.seed
@@ -90,6 +97,26 @@ def run(args: argparse.Namespace) -> int:
     written += [args.capture, photographed.truth_path(args.capture)]
     outputs.check_outputs(written, [args.scene, found.body, found.material.file, args.body])
     console = Console(stderr=True, highlight=False, soft_wrap=True)
+    radiances = _radiances(args, found, cameras, options, console)
+    taken = photographed.taken(radiances, options)
+    photographed.write(args.capture, found, cameras, taken, _how(args))
+    if args.by == "engine" and not args.body:
+        console.print("photographs and predictions have the same mesh: an inverse crime; --body gives a finer one")
+    print(f"capture: {args.capture}, {len(taken)} photographs; truth: {photographed.truth_path(args.capture)}")
+    return 0
+
+
+def _radiances(
+    args: argparse.Namespace,
+    found: Subject,
+    cameras: dict[str, dict[str, Any]],
+    options: PhotographOptions,
+    console: Console,
+) -> Radiances:
+    from quadgraph_validation.truth import photograph_tasks, photographed
+
+    if args.scheduler:
+        return photograph_tasks.by_walks(found, cameras, options, args.capture, args.scheduler)
     with Progress(console=console, transient=True, disable=not console.is_terminal) as bar:
         task = bar.add_task("photograph", total=1.0)
 
@@ -97,15 +124,8 @@ def run(args: argparse.Namespace) -> int:
             bar.update(task, completed=done)
 
         if args.by == "walks":
-            radiances = photographed.by_walks(found, cameras, options, advance)
-        else:
-            radiances = photographed.by_engine(found, cameras, args.body or found.body, args.device, advance)
-    taken = photographed.taken(radiances, options)
-    photographed.write(args.capture, found, cameras, taken, _how(args))
-    if args.by == "engine" and not args.body:
-        console.print("photographs and predictions have the same mesh: an inverse crime; --body gives a finer one")
-    print(f"capture: {args.capture}, {len(taken)} photographs; truth: {photographed.truth_path(args.capture)}")
-    return 0
+            return photographed.by_walks(found, cameras, options, advance)
+        return photographed.by_engine(found, cameras, args.body or found.body, args.device, advance)
 
 
 def _how(args: argparse.Namespace) -> dict[str, Any]:

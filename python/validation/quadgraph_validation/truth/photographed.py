@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,7 @@ from quadgraph import core
 from quadgraph.base.errors import InputError
 from quadgraph.mesh.surface import Surface
 from quadgraph_validation.truth import known_material
-from quadgraph_validation.truth.camera_walks import CameraWalker, Eye
+from quadgraph_validation.truth.camera_walks import CameraPicture, CameraWalker, Eye
 from quadgraph_validation.truth.known_material import KnownMaterial
 
 WHITE = 0.8  # value of the brightest pixel of a photograph: its exposure sees to that
@@ -110,25 +110,50 @@ def by_walks(
     found: Subject, cameras: dict[str, dict[str, Any]], options: PhotographOptions, advance: Callable[[float], None]
 ) -> Radiances:
     """What each camera sees of each light alone, by random walks through the body's mesh. Raises InputError."""
-    if found.document.get("deformation"):
-        raise InputError(f"{found.path}: /deformation: found, allowed with walks is a body as it lies in its file")
-    display = core.load(found.body).display
-    surface = Surface(np.array(display["vertices"], np.float64), np.array(display["triangles"], np.int64))
-    walker = CameraWalker(surface, list(found.lights.values()))
-    result: Radiances = {}
+    walker = walker_of(found)
     steps = 3 * len(cameras)
-    for number, (name, camera) in enumerate(cameras.items()):
-        place, target = (np.array(camera[each], np.float64) for each in ("eye", "look_at"))
-        eye = Eye(place, target, camera["fov"], camera["up"], camera["width"], camera["height"])
-        channels = []
+    pictures = []
+    for number, camera in enumerate(cameras.values()):
         for channel in range(3):
             done = number * 3 + channel
 
             def tell(share: float, done: int = done) -> None:
                 advance((done + share) / steps)
 
-            medium = (found.material.in_channel(channel), found.material.eta)
-            channels.append(walker.see(eye, channel, *medium, options.walks, options.seed + number, tell))
+            seed = options.seed + number
+            pictures.append(seen_by(walker, camera, channel, found.material, options.walks, seed, tell))
+    return radiances_of(found, cameras, pictures)
+
+
+def walker_of(found: Subject) -> CameraWalker:
+    """What walks through the body and meets its lights. Raises InputError for lights and shapes it cannot have."""
+    if found.document.get("deformation"):
+        raise InputError(f"{found.path}: /deformation: found, allowed with walks is a body as it lies in its file")
+    display = core.load(found.body).display
+    surface = Surface(np.array(display["vertices"], np.float64), np.array(display["triangles"], np.int64))
+    return CameraWalker(surface, list(found.lights.values()))
+
+
+def seen_by(
+    walker: CameraWalker,
+    camera: dict[str, Any],
+    channel: int,
+    material: KnownMaterial,
+    walks: int,
+    seed: int,
+    tell: Callable[[float], None],
+) -> CameraPicture:
+    """What one of the cameras of `views` sees in one channel. tell: is called with the share that is done."""
+    place, target = (np.array(camera[each], np.float64) for each in ("eye", "look_at"))
+    eye = Eye(place, target, camera["fov"], camera["up"], camera["width"], camera["height"])
+    return walker.see(eye, channel, material.in_channel(channel), material.eta, walks, seed, tell)
+
+
+def radiances_of(found: Subject, cameras: dict[str, dict[str, Any]], pictures: Sequence[CameraPicture]) -> Radiances:
+    """Of the three channels of each camera, in the order of `cameras`."""
+    result: Radiances = {}
+    for number, name in enumerate(cameras):
+        channels = pictures[3 * number : 3 * number + 3]
         for k, light in enumerate(found.lights):
             radiance = np.stack([each.radiance[k] for each in channels], axis=-1)
             result[name, light] = radiance, np.stack([each.noise[k] for each in channels], axis=-1)
