@@ -17,13 +17,13 @@ from quadgraph.base.errors import InputError
 from quadgraph.mesh.patches import PATCHES, patches_of
 from quadgraph_validation.accuracy import unseen_engine, unseen_motion, unseen_study, unseen_tables
 from quadgraph_validation.bodies import unseen_bodies, unseen_cases
-from quadgraph_validation.truth.unseen_truth import UnseenTruth
+from quadgraph_validation.truth.kept_walks import KeptWalks
 from shapes import icosphere
 
 pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
 pytest.importorskip("numba", reason="the extra `walks` is not installed: run tools/setup")
 
-from quadgraph_validation.truth import unseen_truth
+from quadgraph_validation.truth import kept_walks, unseen_truth
 
 SEED = 2  # an even body of 29 mean free paths, albedo .9995, under a rectangle
 
@@ -96,7 +96,7 @@ def test_patches_are_of_about_the_same_area_and_keep_the_sides_of_walls_apart(bo
 
 
 def test_walks_are_gone_on_with_and_others_are_not_taken_for_them(tmp_path, monkeypatch):
-    monkeypatch.setattr(unseen_truth, "BATCH", 2000)
+    monkeypatch.setattr(kept_walks, "BATCH", 2000)
     case = unseen_cases.drawn(SEED, icosphere(3, 20.0))
     heard: list[int] = []
     first = unseen_truth.make(case, 4000, tmp_path, heard.append)
@@ -117,7 +117,7 @@ def test_parts_and_errors_are_those_of_known_patches():
     noise = 0.02 * exitance
     scattered = 4 * exitance * area
     squares = scattered**2 / 4 + 12 * (noise * area) ** 2
-    truth = UnseenTruth({}, np.arange(30), area, 4, 4 * entered, scattered, squares, 0 * ones, np.zeros(4))
+    truth = KeptWalks({}, np.arange(30), area, 4, 4 * entered, scattered, squares, 0 * ones, np.zeros(4))
     parts = unseen_study.parts_of(truth, exitance)
     counts = {name: int(part.sum()) for name, part in parts.items()}
     assert counts == {"whole": 30, "lit": 15, "unlit": 15, "dimmest": 10}

@@ -27,6 +27,7 @@ from shapes import icosphere
 _core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
 pytest.importorskip("numba", reason="needs the extra walks")
 scene_walks = pytest.importorskip("quadgraph_validation.truth.scene_walks")
+kept_walks = pytest.importorskip("quadgraph_validation.truth.kept_walks")
 
 __all__ = ["ball"]
 
@@ -38,10 +39,17 @@ def body(ball) -> ChartBody:
     return ChartBody(BALL, ball, ball.parent, "cpu", 32, {Choice(): Baked(ball)})
 
 
+def walked(surface, folder, walks: int):
+    """Through the ball, in twenty batches."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(kept_walks, "BATCH", walks // 20)
+        return scene_walks.made(BALL, surface, folder, lambda text: None, walks)
+
+
 @pytest.fixture(scope="module")
-def walks(ball):
+def walks(ball, tmp_path_factory):
     surface = ChartBody(BALL, ball, ball.parent, "cpu", 32, {Choice(): Baked(ball)}).default_surface
-    return scene_walks.walked(BALL, surface, scene_walks.media_of(BALL, surface), 100_000, lambda text: None)
+    return walked(surface, tmp_path_factory.mktemp("walks"), 100_000)
 
 
 def test_an_exitance_that_is_right_has_no_error_and_another_has_its_own(walks):
@@ -58,11 +66,9 @@ def test_an_exitance_that_is_right_has_no_error_and_another_has_its_own(walks):
     assert walks.area[dark].sum() / walks.area.sum() == pytest.approx(0.5, abs=0.05)
 
 
-def test_noise_of_the_walks_is_no_error_of_what_is_judged(body, walks):
+def test_noise_of_the_walks_is_no_error_of_what_is_judged(body, walks, tmp_path):
     """Of two runs of the same walks, one judged by the other, about the noise of one is left, not of both."""
-    surface = body.default_surface
-    media = scene_walks.media_of(BALL, surface)
-    other = scene_walks.walked(BALL, surface, media, 50_000, lambda text: None)
+    other = walked(body.default_surface, tmp_path, 50_000)
     left = walks.errors(other.exitance[walks.patch])["whole"]
     assert 0.7 < left / other.noise["whole"] < 1.3
 
@@ -114,18 +120,19 @@ def test_walks_and_solves_of_the_default_bake_are_judged_by_patches_and_walks_sh
 
 
 def test_walks_are_kept_under_all_that_enters_them(body, tmp_path, monkeypatch):
-    monkeypatch.setattr(scene_walks, "WALKS", 2000)
+    monkeypatch.setattr(kept_walks, "BATCH", 1000)
     said = []
     surface = body.default_surface
-    first = scene_walks.made(BALL, surface, tmp_path, said.append)
-    assert len(said) == 3 * scene_walks.BATCHES
-    again = scene_walks.made(BALL, surface, tmp_path, said.append)
-    assert len(said) == 3 * scene_walks.BATCHES
+    first = scene_walks.made(BALL, surface, tmp_path, said.append, 2000)
+    assert said[:3] == [f"ball: random walks, channel 1, {done} of 2,000" for done in ("0", "1,000", "2,000")]
+    assert len(said) == 9
+    again = scene_walks.made(BALL, surface, tmp_path, said.append, 2000)
+    assert len(said) == 12
     assert np.array_equal(first.exitance, again.exitance)
     for changed in (replace(BALL, eta=1.2), replace(BALL, coefficients=of_medium([0.2] * 3, [0.061] * 3))):
         before = len(list(tmp_path.iterdir()))
-        scene_walks.made(changed, surface, tmp_path, said.append)
-        assert len(list(tmp_path.iterdir())) == before + 1
+        scene_walks.made(changed, surface, tmp_path, said.append, 2000)
+        assert len(list(tmp_path.iterdir())) == before + 3
 
 
 def test_coefficients_of_walks_are_those_of_the_scene():

@@ -21,7 +21,7 @@ from quadgraph_validation.base import extra_module
 from quadgraph_validation.bodies import unseen_bodies, unseen_cases
 
 if TYPE_CHECKING:
-    from quadgraph_validation.truth.unseen_truth import UnseenTruth
+    from quadgraph_validation.truth.kept_walks import KeptWalks
 
 _UNLIT = 0.1  # of the mean q: below it a patch is unlit, as a face is in the engine's report
 # Of a run, in its record.
@@ -97,7 +97,7 @@ def record_of(wanted: UnseenRun, rows: list[dict[str, Any]]) -> dict[str, Any]:
 
 def judged(seed: int, wanted: UnseenRun, tell: Callable[[str, int], None]) -> dict[str, Any]:
     """One case: what it is, its truth's noise, and what each solve is off. tell: is told what is done, and walks."""
-    from quadgraph_validation.truth import unseen_truth
+    from quadgraph_validation.truth import kept_walks, unseen_truth
 
     tell("body", 0)
     low, high = wanted.mean_free_paths
@@ -120,7 +120,7 @@ def judged(seed: int, wanted: UnseenRun, tell: Callable[[str, int], None]) -> di
         "light": case.light.text,
         "tets": found.tets,
         "apart": found.apart,
-        "walks": truth.batches * unseen_truth.BATCH,
+        "walks": truth.batches * kept_walks.BATCH,
         "balance": truth.balance,
         "again": float(truth.again.sum() / truth.scattered.sum()),
         "noise": {name: _rms(truth, part, truth.error) for name, part in parts.items()},
@@ -129,7 +129,7 @@ def judged(seed: int, wanted: UnseenRun, tell: Callable[[str, int], None]) -> di
     return row if found.motion is None else row | {"motion": errors_in_motion(truth, parts, found.motion)}
 
 
-def parts_of(truth: UnseenTruth, exitance: np.ndarray) -> dict[str, np.ndarray]:
+def parts_of(truth: KeptWalks, exitance: np.ndarray) -> dict[str, np.ndarray]:
     """(n,) bool by name: the patches that count. Those of too few patches, or no brighter than noise, are left out.
 
     exitance (n,): of the engine, which says what is dimmest: walks would take what their noise makes dim.
@@ -142,7 +142,7 @@ def parts_of(truth: UnseenTruth, exitance: np.ndarray) -> dict[str, np.ndarray]:
     return {name: part for name, part in parts.items() if part.sum() >= _FEW and _square(truth, part) > 0}
 
 
-def errors(truth: UnseenTruth, parts: dict[str, np.ndarray], answer: UnseenAnswer) -> dict[str, Any]:
+def errors(truth: KeptWalks, parts: dict[str, np.ndarray], answer: UnseenAnswer) -> dict[str, Any]:
     """What one solve is off, and what it says that it is off, by part."""
     return {
         "sweeps": answer.sweeps,
@@ -154,7 +154,7 @@ def errors(truth: UnseenTruth, parts: dict[str, np.ndarray], answer: UnseenAnswe
     }
 
 
-def errors_in_motion(truth: UnseenTruth, parts: dict[str, np.ndarray], found: UnseenMotion) -> dict[str, Any]:
+def errors_in_motion(truth: KeptWalks, parts: dict[str, np.ndarray], found: UnseenMotion) -> dict[str, Any]:
     """What the last frame is off, what it flickers, and what is left of it after a second in which nothing changes."""
     return {
         "true": _true(truth, parts, found.moving),
@@ -167,18 +167,18 @@ def errors_in_motion(truth: UnseenTruth, parts: dict[str, np.ndarray], found: Un
     }
 
 
-def _true(truth: UnseenTruth, parts: dict[str, np.ndarray], exitance: np.ndarray) -> dict[str, float]:
+def _true(truth: KeptWalks, parts: dict[str, np.ndarray], exitance: np.ndarray) -> dict[str, float]:
     """By part, without the truth's noise."""
     found = {name: _rms(truth, part, exitance - truth.exitance) for name, part in parts.items()}
     noise = {name: _rms(truth, part, truth.error) for name, part in parts.items()}
     return {name: float(np.sqrt(max(found[name] ** 2 - noise[name] ** 2, 0))) for name in parts}
 
 
-def _rms(truth: UnseenTruth, part: np.ndarray, difference: np.ndarray) -> float:
+def _rms(truth: KeptWalks, part: np.ndarray, difference: np.ndarray) -> float:
     """Over a part, weighted by area, relative to the truth without its noise."""
     return float(np.sqrt(truth.area[part] @ difference[part] ** 2 / _square(truth, part)))
 
 
-def _square(truth: UnseenTruth, part: np.ndarray) -> float:
+def _square(truth: KeptWalks, part: np.ndarray) -> float:
     """Of the exitance of a part, weighted by area, without its noise."""
     return float(truth.area[part] @ (truth.exitance[part] ** 2 - truth.error[part] ** 2))

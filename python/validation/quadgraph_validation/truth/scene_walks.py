@@ -1,29 +1,24 @@
-"""What leaves the patches of a scene's surface, by random walks through its triangles (mesh_walk.py), kept on disk."""
+"""What leaves the patches of a scene's surface, by random walks through its triangles."""
 
 from __future__ import annotations
 
-import hashlib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from quadgraph.api.lights import as_light
 from quadgraph.baking.budget.surface_errors import unlit_part
-from quadgraph.mesh.patches import patches_of
 from quadgraph.mesh.surface import Surface
-from quadgraph_validation.base import extra_module, store
+from quadgraph_validation.base import extra_module
 from quadgraph_validation.bodies.scenes import StudyScene
 from quadgraph_validation.bodies.unseen_cases import UnseenMedium
 
 WALKS = 1_000_000  # that meet the body, in each channel
-BATCHES = 20  # of them
 _SEED = 29
 _CELLS = 128  # along the height, of coefficients that differ from place to place
 _FEW = 5  # patches: a part with fewer is not judged
-_ARRAYS = ("patch", "face_area", "entered", "exitance", "error")
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,44 +72,29 @@ class SceneWalks:
         return whole | ({"unlit": unlit} if unlit.sum() >= _FEW else {})
 
 
-def made(scene: StudyScene, surface: Surface, folder: Path, tell: Callable[[str], None]) -> SceneWalks:
-    """Those of a scene on a surface that stands for its body, walked if they are not in `folder`.
-
-    Raises InputError without Numba.
-    """
-    media = media_of(scene, surface)
-    key = _key(scene, surface, media)
-    path = folder / f"{scene.name}-exitance-{store.digest(key)[:12]}.npz"
-    if not path.exists():
-        extra_module.load("numba", "walks")
-        folder.mkdir(parents=True, exist_ok=True)
-        found = walked(scene, surface, media, WALKS, tell)
-        store.save(path, key, {name: getattr(found, name) for name in _ARRAYS})
-    return SceneWalks(**store.load(path, key, _ARRAYS, "random walks"))
-
-
-def walked(
-    scene: StudyScene, surface: Surface, media: Sequence[UnseenMedium], walks: int, tell: Callable[[str], None]
+def made(
+    scene: StudyScene, surface: Surface, folder: Path, tell: Callable[[str], None], walks: int = WALKS
 ) -> SceneWalks:
-    """By so many walks in each channel, through the medium of each."""
-    from quadgraph_validation.truth.mesh_walk import MeshWalker
+    """Those of a scene on a surface that stands for its body, so many in each channel; those that are not in `folder`
+    are walked. Raises InputError without Numba.
+    """
+    extra_module.load("numba", "walks")
+    from quadgraph_validation.truth import kept_walks
 
-    patch = patches_of(surface)
+    found = []
+    for channel, medium in enumerate(media_of(scene, surface), 1):
+
+        def walked(done: int, channel: int = channel) -> None:
+            tell(f"{scene.name}: random walks, channel {channel}, {done:,} of {walks:,}")
+
+        told = {"scene": scene.name, "light": scene.light}
+        task = kept_walks.WalkTask(
+            f"{scene.name}-walks-{channel}", told, surface, medium, as_light(scene.light), _SEED + channel - 1
+        )
+        found.append(kept_walks.make(task, walks, folder, walked))
     face_area = np.linalg.norm(surface.doubled_normals, axis=1) / 2
-    area = np.bincount(patch, face_area)
-    light = as_light(scene.light)
-    entered, scattered = [], []
-    for channel, medium in enumerate(media):
-        walker = MeshWalker(surface, medium, light, patch)
-        batches = []
-        for number in range(BATCHES):
-            tell(f"{scene.name}: random walks, channel {channel + 1}, batch {number + 1} of {BATCHES}")
-            batches.append(walker.batch(walks // BATCHES, number, _SEED + channel))
-        entered.append(np.array([batch.entered for batch in batches]) / area)
-        scattered.append(np.array([batch.scattered for batch in batches]) / area)
-    by_batch = np.stack(scattered, axis=-1)
-    error = by_batch.std(axis=0, ddof=1) / np.sqrt(BATCHES)
-    return SceneWalks(patch, face_area, np.stack(entered, axis=-1).mean(axis=0), by_batch.mean(axis=0), error)
+    by_channel = ([getattr(each, name) for each in found] for name in ("irradiance", "exitance", "error"))
+    return SceneWalks(found[0].patch, face_area, *(np.stack(each, axis=-1) for each in by_channel))
 
 
 def media_of(scene: StudyScene, surface: Surface) -> list[UnseenMedium]:
@@ -133,14 +113,3 @@ def media_of(scene: StudyScene, surface: Surface) -> list[UnseenMedium]:
             scattering, absorption = scattering[:1, :1, :1], absorption[:1, :1, :1]
         media.append(UnseenMedium("scene", scene.eta, scattering, absorption, first, spacing))
     return media
-
-
-def _key(scene: StudyScene, surface: Surface, media: Sequence[UnseenMedium]) -> dict[str, Any]:
-    """Everything that enters them."""
-    digest = hashlib.sha256()
-    for medium in media:
-        for values in (medium.sigma_s_prime, medium.sigma_a, np.array([*medium.first, medium.spacing])):
-            digest.update(repr(values.shape).encode() + np.ascontiguousarray(values).tobytes())
-    body = hashlib.sha256(surface.vertices.tobytes() + surface.triangles.tobytes()).hexdigest()
-    told = {"scene": scene.name, "surface": body, "coefficients": digest.hexdigest(), "eta": scene.eta}
-    return told | {"light": scene.light, "walks": {"walks": WALKS, "batches": BATCHES, "seed": _SEED}}

@@ -1,135 +1,28 @@
-"""Random walks through an unseen case, kept on disk under a key of everything that enters them, and gone on with."""
+"""Random walks through an unseen case."""
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
-import numpy as np
-
-from quadgraph.mesh.patches import patches_of
-from quadgraph_validation.base import store
 from quadgraph_validation.bodies.unseen_cases import UnseenCase
-from quadgraph_validation.truth.mesh_walk import MeshWalker, WalkBatch
+from quadgraph_validation.truth import kept_walks
+from quadgraph_validation.truth.kept_walks import KeptWalks, WalkTask
 
-BATCH = 50_000  # walks that meet the body
 _SEED = 17
-_VERSION = 1  # of the walks: another one makes truths anew
-_ROUND = 10  # batches between two writes
-_ARRAYS = ("batches", "entered", "scattered", "squares", "again", "rest")
 
 
-@dataclass
-class UnseenTruth:
-    """Batches added up. By patch (n,), W: entered, scattered and its squares, again, as WalkBatch has them; rest (4,):
-    absorbed, gone, unscattered, and walks lost. patch (m,): of each triangle; area (n,): mm^2.
-    """
-
-    key: dict[str, Any]
-    patch: np.ndarray
-    area: np.ndarray
-    batches: int
-    entered: np.ndarray
-    scattered: np.ndarray
-    squares: np.ndarray
-    again: np.ndarray
-    rest: np.ndarray
-
-    @property
-    def exitance(self) -> np.ndarray:
-        """(n,) W/mm^2 of light that has scattered."""
-        return self.scattered / self.batches / self.area
-
-    @property
-    def error(self) -> np.ndarray:
-        """(n,) standard error of the exitance, from the scatter of the batches; wants two of them."""
-        mean = self.scattered / self.batches
-        spread = np.maximum(self.squares / self.batches - mean**2, 0)
-        return np.sqrt(spread / (self.batches - 1)) / self.area
-
-    @property
-    def irradiance(self) -> np.ndarray:
-        """(n,) q, W/mm^2, of light that enters for the first time."""
-        return self.entered / self.batches / self.area
-
-    @property
-    def balance(self) -> float:
-        """What is missing of the light that entered, as a share of it: noise alone."""
-        return float(1 - self.rest[:2].sum() / self.entered.sum())
-
-    def add(self, batch: WalkBatch) -> None:
-        """Take in one more batch."""
-        self.batches += 1
-        self.entered += batch.entered
-        self.scattered += batch.scattered
-        self.squares += batch.scattered**2
-        self.again += batch.again
-        self.rest += (batch.absorbed, batch.gone, batch.unscattered.sum(), batch.lost)
+def make(case: UnseenCase, walks: int, folder: Path, tell: Callable[[int], None]) -> KeptWalks:
+    """As `kept_walks.make` has it, of a case."""
+    return kept_walks.make(_task(case), walks, folder, tell)
 
 
-def make(case: UnseenCase, walks: int, folder: Path, tell: Callable[[int], None]) -> UnseenTruth:
-    """Bring a case's walks to `walks` and keep them in `folder`; an interruption loses one batch.
-
-    tell: is given the number of walks that are done. Raises InputError if what is stored cannot be read.
-    """
-    folder.mkdir(parents=True, exist_ok=True)
-    found, goal = stored(case, folder), -(-walks // BATCH)
-    tell(found.batches * BATCH)
-    if found.batches >= goal:
-        return found
-    walker = MeshWalker(case.surface, case.medium, case.light, found.patch, case.inter_reflection)
-    try:
-        while found.batches < goal:
-            found.add(walker.batch(BATCH, found.batches, _SEED))
-            tell(found.batches * BATCH)
-            if found.batches % _ROUND == 0:
-                _save(folder, case, found)
-    finally:
-        _save(folder, case, found)
-    return found
+def stored(case: UnseenCase, folder: Path) -> KeptWalks:
+    """The walks of a case that there are. Raises InputError if they cannot be read."""
+    return kept_walks.stored(_task(case), folder)
 
 
-def stored(case: UnseenCase, folder: Path) -> UnseenTruth:
-    """The walks that there are. Raises InputError if they cannot be read."""
-    patch = patches_of(case.surface)
-    area = np.bincount(patch, np.linalg.norm(case.surface.doubled_normals, axis=1) / 2)
-    key = _key(case, patch)
-    path = _path(folder, case, key)
-    if not path.exists():
-        entered, scattered, squares, again = np.zeros((4, len(area)))
-        return UnseenTruth(key, patch, area, 0, entered, scattered, squares, again, np.zeros(4))
-    arrays = store.load(path, key, _ARRAYS, "random walks")
-    return UnseenTruth(key, patch, area, int(arrays.pop("batches")), **arrays)
-
-
-def _key(case: UnseenCase, patch: np.ndarray) -> dict[str, Any]:
-    medium = case.medium
-    key = {
-        "seed": case.seed,
-        "surface": _sha(case.surface.vertices, case.surface.triangles, patch),
-        "medium": _sha(medium.sigma_s_prime, medium.sigma_a),
-        "grid": [*medium.first, medium.spacing],
-        "eta": medium.eta,
-        "light": case.light.text,
-        "walks": {"batch": BATCH, "seed": _SEED, "version": _VERSION},
-    }
-    return key if case.inter_reflection else key | {"inter_reflection": False}
-
-
-def _sha(*arrays: np.ndarray) -> str:
-    found = hashlib.sha256()
-    for array in arrays:
-        found.update(str(array.shape).encode() + np.ascontiguousarray(array).tobytes())
-    return found.hexdigest()
-
-
-def _path(folder: Path, case: UnseenCase, key: dict[str, Any]) -> Path:
-    return folder / f"unseen-{case.seed}-{store.digest(key)[:12]}.npz"
-
-
-def _save(folder: Path, case: UnseenCase, found: UnseenTruth) -> None:
-    arrays = {name: np.asarray(getattr(found, name)) for name in _ARRAYS}
-    store.save(_path(folder, case, found.key), found.key, arrays)
+def _task(case: UnseenCase) -> WalkTask:
+    told = {"seed": case.seed, "light": case.light.text}
+    body = (case.surface, case.medium, case.light)
+    return WalkTask(f"unseen-{case.seed}", told, *body, _SEED, case.inter_reflection)
