@@ -81,7 +81,7 @@ def photograph(board: Board, lens: Lens, pose: Pose, body: Body | None = None, s
         cv2.resize((dots[..., axis] - 0.5).astype(np.float32), fine, interpolation=cv2.INTER_LINEAR) for axis in (0, 1)
     )
     shown = cv2.remap(bitmap(board), *maps, cv2.INTER_LINEAR, borderMode=cv2.BORDER_CONSTANT, borderValue=0.25)
-    grey = shown.reshape(lens.height, samples, lens.width, samples).mean(axis=(1, 3))
+    grey = cv2.resize(shown, (lens.width, lens.height), interpolation=cv2.INTER_AREA)
     seen = np.repeat(grey[..., None].astype(float), 3, axis=2)
     if body is not None:
         unit = ways / np.linalg.norm(ways, axis=2, keepdims=True)

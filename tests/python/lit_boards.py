@@ -22,14 +22,15 @@ PAPER = board_photographs.PAPER  # reflectance of the white squares
 
 def lamp_light(position: Any, power: Any, aim: Any = None) -> Light:
     """The irradiance of an isotropic point light, W/mm^2, of powers (3,) in W; or of a Lambertian one that aims."""
+    x, y, high = np.array(position, float)
 
     def of(places: np.ndarray) -> np.ndarray:
-        away = np.array(position, float) - np.concatenate([places, np.zeros((len(places), 1))], axis=1)
-        distance = np.linalg.norm(away, axis=1)
-        lit = np.maximum(away[:, 2], 0) / (4 * np.pi * distance**3)
+        right, up = x - places[:, 0], y - places[:, 1]
+        distance = np.sqrt(right * right + up * up + high * high)
+        lit = max(high, 0.0) / (4 * np.pi) / (distance * distance * distance)
         if aim is not None:
             axis = (aim - np.array(position, float)) / np.linalg.norm(aim - np.array(position, float))
-            lit = 4 * lit * np.maximum(-away @ axis / distance, 0)
+            lit = 4 * lit * np.maximum(-(right * axis[0] + up * axis[1] + high * axis[2]) / distance, 0)
         return lit[:, None] * np.array(power, float)
 
     return of
@@ -58,7 +59,8 @@ def reflected(board: Board, lens: Lens, pose: Pose, light: Light, samples: int =
     lit = np.zeros((*met.shape, 3))
     found = light(places[met])
     lit[met] = found if found.ndim == 2 else found[:, None]
-    lit = lit.reshape(lens.height, samples, lens.width, samples, 3).mean(axis=(1, 3))
+    if samples > 1:
+        lit = lit.reshape(lens.height, samples, lens.width, samples, 3).mean(axis=(1, 3))
     return board_photographs.photograph(board, lens, pose) * lit / np.pi
 
 
@@ -102,13 +104,15 @@ class LampScene:
         """(h, w, 3) radiance of a photograph, W/(mm^2 sr)."""
         light = lamp_light(self.position, self.power, self.middle if self.forwards else None)
         shown = reflected(self.board, lens, pose, lambda places: light(places) + self.ambient * self.power)
-        places, _ = at_board(lens, pose)
-        flat = np.concatenate([places, np.zeros((*places.shape[:2], 1))], axis=2)
         if self.gloss:
+            places, _ = at_board(lens, pose)
+            flat = np.concatenate([places, np.zeros((*places.shape[:2], 1))], axis=2)
             away = (self.position - flat, pose.eye - flat)
             mean = sum(each / np.linalg.norm(each, axis=2, keepdims=True) for each in away)
             cosine = mean[..., 2] / np.linalg.norm(mean, axis=2)
             shown = shown * (1 + self.gloss * cosine**200)[..., None]
+        if not self.falls:
+            return shown
         slopes2 = (board_photographs.middles(lens)[..., :2] ** 2).sum(axis=2)
         return shown * np.exp(-self.falls * slopes2)[..., None]
 
