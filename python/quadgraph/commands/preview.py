@@ -92,6 +92,8 @@ class _Bake:
                 last = line.strip() or last
                 if last == self._size_note:  # which was told at first
                     continue
+                if last.startswith(ERROR) and not self.closing.is_set():
+                    self.failed = True  # its process may end after the window
                 self._tell(last)
                 self._announce("progress", last)
         status = child.wait()
