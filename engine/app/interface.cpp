@@ -162,7 +162,7 @@ void Interface::start_backend() {
 
 void Interface::begin(const std::vector<Event>& events) {
   GLFWwindow* window = window_.handle();
-  const auto ratio = static_cast<double>(window_.pixels_per_unit());
+  const float ratio = window_.pixels_per_unit();
   for (const Event& event : events) {
     if (const auto* key = std::get_if<KeyEvent>(&event)) {
       ImGui_ImplGlfw_KeyCallback(window, key->key, key->scancode, key->action, key->mods);
@@ -171,7 +171,7 @@ void Interface::begin(const std::vector<Event>& events) {
     } else if (const auto* button = std::get_if<ButtonEvent>(&event); button != nullptr && button->button < buttons) {
       down_[static_cast<std::size_t>(button->button)] = button->action == GLFW_PRESS;
     } else if (const auto* motion = std::get_if<MotionEvent>(&event)) {
-      pointer_ = {motion->x / ratio, motion->y / ratio};
+      pointer_ = glm::vec2(motion->x, motion->y) / ratio;
     } else if (const auto* scroll = std::get_if<ScrollEvent>(&event)) {
       ImGui_ImplGlfw_ScrollCallback(window, scroll->x, scroll->y);
     }
@@ -186,7 +186,7 @@ void Interface::begin(const std::vector<Event>& events) {
 void Interface::point() const {
   ImGuiIO& io = ImGui::GetIO();
   std::copy(down_.begin(), down_.end(), io.MouseDown);
-  if (window_.events_wait()) io.MousePos = {static_cast<float>(pointer_.x), static_cast<float>(pointer_.y)};
+  if (window_.events_wait()) io.MousePos = {pointer_.x, pointer_.y};
 }
 
 bool Interface::has_pointer() const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <glm/vec2.hpp>
 #include <vector>
 
 #include "engine/app/window.h"
@@ -48,7 +49,7 @@ class Interface {
   float unit_ = 1;
   static constexpr int buttons = 3;      // of a mouse, that widgets know
   std::array<bool, buttons> down_ = {};  // as the last frame saw them
-  MotionEvent pointer_ = {};             // in window coordinates
+  glm::vec2 pointer_{0};                 // in window coordinates
   vk::UniqueDescriptorPool pool_;
   vk::UniqueRenderPass pass_;
   std::uint64_t generation_ = 0;  // of the swapchain that the framebuffers are of

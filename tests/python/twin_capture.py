@@ -92,6 +92,13 @@ def write(folder: Path, material: Mapping[str, Any] | Path, seed: int, gains: bo
     return path
 
 
+def twin(folder: Path, seed: int, **meshes: Any) -> Path:
+    """The folder with a capture of TRUTH with nothing wrong; meshes: as `bodies` takes them."""
+    bodies(folder, **meshes)
+    write(folder, TRUTH, seed)
+    return folder
+
+
 def document(photographs: list[dict[str, Any]]) -> dict[str, Any]:
     """A whole capture of these photographs."""
     fixed = {"quadgraph_capture": 1, "body": "potato.qgraph", "eta": ETA, "polarised": True}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import shutil
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +23,18 @@ from quadgraph.work.task_run import run_tasks
 _ARRAYS = ("radiance", "gloss", "alpha", "error", "band")
 
 
+@dataclass(frozen=True)
+class _Told:
+    """How tasks come along, for who counts solves."""
+
+    say: Callable[[str], None]
+    tell: Callable[[], None]
+
+    def advance(self, text: str) -> None:
+        """One more is finished."""
+        self.tell()
+
+
 class LightTasks:
     """Spreads the solves of an acquisition's predictions over workers."""
 
@@ -31,20 +44,14 @@ class LightTasks:
         """ledger: folder for what is finished; say: is told what workers do."""
         self._workers, self._ledger = workers, ledger.absolute()
         self._device, self._validation = device, validation
-        self.say = say
-        self._tell: Callable[[], None] = _nothing
+        self._say = say
 
     def __call__(self, scenes: Sequence[Sequence[str]], tell: Callable[[], None]) -> list[SolvedLights]:
         """As SpreadSolves has it. Raises InputError, ToolError."""
-        self._tell = tell
         tasks = [self._task(f"lights {number}", ones) for number, ones in enumerate(scenes, 1)]
-        reports = run_tasks(tasks, self._workers, self._ledger, self)
+        reports = run_tasks(tasks, self._workers, self._ledger, _Told(self._say, tell))
         pictures = [[_read(path) for path in task.writes] for task in tasks]
         return [SolvedLights(seen, report) for seen, report in zip(pictures, reports, strict=True)]
-
-    def advance(self, text: str) -> None:
-        """One more is finished."""
-        self._tell()
 
     def _task(self, name: str, scenes: Sequence[str]) -> Task:
         documents = [self._kept(json.loads(scene)) for scene in scenes]
@@ -86,7 +93,3 @@ def predicted(
 def _read(path: Path) -> Predicted:
     with np.load(path) as arrays:
         return Predicted(*(arrays[name] for name in _ARRAYS))
-
-
-def _nothing() -> None:
-    """Where nobody counts."""

@@ -25,10 +25,7 @@ SEED = 20
 @pytest.fixture(scope="module")
 def twin(tmp_path_factory) -> Path:
     """The folder of a capture."""
-    folder = tmp_path_factory.mktemp("twin")
-    twin_capture.bodies(folder)
-    twin_capture.write(folder, twin_capture.TRUTH, SEED)
-    return folder
+    return twin_capture.twin(tmp_path_factory.mktemp("twin"), SEED)
 
 
 @pytest.fixture(scope="module")

@@ -20,19 +20,13 @@ pytest.importorskip("quadgraph._core", reason="the compiled engine is not built:
 @pytest.fixture(scope="module")
 def twin(tmp_path_factory) -> Path:
     """The folder of a capture with nothing wrong."""
-    folder = tmp_path_factory.mktemp("twin")
-    twin_capture.bodies(folder)
-    twin_capture.write(folder, twin_capture.TRUTH, 20)
-    return folder
+    return twin_capture.twin(tmp_path_factory.mktemp("twin"), 20)
 
 
 @pytest.fixture(scope="module")
 def coarse_twin(tmp_path_factory) -> Path:
     """The same on coarser meshes: enough for what is plain to see."""
-    folder = tmp_path_factory.mktemp("coarse")
-    twin_capture.bodies(folder, vertices=400, finer=3)
-    twin_capture.write(folder, twin_capture.TRUTH, 20)
-    return folder
+    return twin_capture.twin(tmp_path_factory.mktemp("coarse"), 20, vertices=400, finer=3)
 
 
 def spoilt(twin: Path, folder: Path, spoil: Spoil) -> Path:

@@ -6,17 +6,19 @@ import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from quadgraph.api.lights import Light
 from quadgraph.mesh.patches import patches_of
 from quadgraph.mesh.surface import Surface
-from quadgraph_validation.base import store
+from quadgraph_validation.base import extra_module, store
 from quadgraph_validation.bodies.smooth_sky import SmoothSky
 from quadgraph_validation.bodies.unseen_cases import UnseenMedium
-from quadgraph_validation.truth.mesh_walk import MeshWalker, WalkBatch
+
+if TYPE_CHECKING:
+    from quadgraph_validation.truth.mesh_walk import WalkBatch
 
 BATCH = 50_000  # walks that meet the body
 _VERSION = 1  # of the walks: another one makes truths anew
@@ -90,13 +92,17 @@ class KeptWalks:
 def make(task: WalkTask, walks: int, folder: Path, tell: Callable[[int], None]) -> KeptWalks:
     """Bring a task's walks to `walks` and keep them in `folder`; an interruption loses one batch.
 
-    tell: is given the number of walks that are done. Raises InputError if what is stored cannot be read.
+    tell: is given the number of walks that are done. Raises InputError if what is stored cannot be read, and without
+    Numba where some are to be walked.
     """
     folder.mkdir(parents=True, exist_ok=True)
     found, goal = stored(task, folder), -(-walks // BATCH)
     tell(found.batches * BATCH)
     if found.batches >= goal:
         return found
+    extra_module.load("numba", "walks")
+    from quadgraph_validation.truth.mesh_walk import MeshWalker
+
     walker = MeshWalker(task.surface, task.medium, task.light, found.patch, task.inter_reflection)
     try:
         while found.batches < goal:

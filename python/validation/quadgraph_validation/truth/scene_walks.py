@@ -11,9 +11,9 @@ import numpy as np
 from quadgraph.api.lights import as_light
 from quadgraph.baking.budget.surface_errors import unlit_part
 from quadgraph.mesh.surface import Surface
-from quadgraph_validation.base import extra_module
 from quadgraph_validation.bodies.scenes import StudyScene
 from quadgraph_validation.bodies.unseen_cases import UnseenMedium
+from quadgraph_validation.truth import kept_walks
 
 WALKS = 1_000_000  # that meet the body, in each channel
 _SEED = 29
@@ -76,11 +76,8 @@ def made(
     scene: StudyScene, surface: Surface, folder: Path, tell: Callable[[str], None], walks: int = WALKS
 ) -> SceneWalks:
     """Those of a scene on a surface that stands for its body, so many in each channel; those that are not in `folder`
-    are walked. Raises InputError without Numba.
+    are walked. Raises InputError as `kept_walks.make` does.
     """
-    extra_module.load("numba", "walks")
-    from quadgraph_validation.truth import kept_walks
-
     found = []
     for channel, medium in enumerate(media_of(scene, surface), 1):
 
