@@ -100,8 +100,14 @@ def _refined(linear: np.ndarray, place: np.ndarray, step: np.ndarray, gap: float
         return None
     angles = np.arctan2(step[1], step[0])
     start = np.array([0.0, 0.0, *angles, np.log(_BLUR), values.mean(), 0.0])
-    start[6] = float(np.polyfit(_edges(start, offsets), values, 1)[0])
-    found = least_squares(lambda x: x[5] + x[6] * _edges(x, offsets) - values, start, method="lm", max_nfev=400)
+    start[6] = float(np.polyfit(_edges(start, offsets)[0], values, 1)[0])
+    found = least_squares(
+        lambda x: x[5] + x[6] * _edges(x, offsets)[0] - values,
+        start,
+        lambda x: _slopes(x, offsets),
+        method="lm",
+        max_nfev=400,
+    )
     contrast = abs(found.x[6])
     off = float(np.sqrt((found.fun**2).mean()))
     if not contrast or np.linalg.norm(found.x[:2]) > _STRAY:
@@ -109,9 +115,30 @@ def _refined(linear: np.ndarray, place: np.ndarray, step: np.ndarray, gap: float
     return place + found.x[:2], off / (2 * contrast)
 
 
-def _edges(x: np.ndarray, offsets: np.ndarray) -> np.ndarray:
-    """From -1 to 1, the squares around a corner at x[:2] between edges of angles x[2:4], blurred by exp(x[4])."""
+def _edges(x: np.ndarray, offsets: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """From -1 to 1, (n,), the squares around a corner at x[:2] between edges of angles x[2:4], blurred by exp(x[4]);
+    what each edge makes of it, and distances from the edges over sqrt(2) times the blur, (2, n) each.
+    """
     from_corner = offsets - x[:2]
     width = np.sqrt(2) * np.exp(np.clip(x[4], -3, 3))
-    signed = [erf((from_corner[:, 1] * np.cos(angle) - from_corner[:, 0] * np.sin(angle)) / width) for angle in x[2:4]]
-    return np.asarray(signed[0] * signed[1])
+    angles = x[2:4, None]
+    away = (from_corner[:, 1] * np.cos(angles) - from_corner[:, 0] * np.sin(angles)) / width
+    sides = erf(away)
+    return np.asarray(sides[0] * sides[1]), sides, away
+
+
+def _slopes(x: np.ndarray, offsets: np.ndarray) -> np.ndarray:
+    """(n, 7) derivatives of x[5] + x[6] * `_edges` with respect to x."""
+    whole, sides, away = _edges(x, offsets)
+    width = np.sqrt(2) * np.exp(np.clip(x[4], -3, 3))
+    each = x[6] * 2 / np.sqrt(np.pi) * np.exp(-(away**2)) * sides[::-1]  # with respect to the distances
+    along = np.cos(x[2:4, None]) * (offsets[:, 0] - x[0]) + np.sin(x[2:4, None]) * (offsets[:, 1] - x[1])
+    columns = [
+        (each * np.sin(x[2:4, None])).sum(axis=0) / width,
+        -(each * np.cos(x[2:4, None])).sum(axis=0) / width,
+        *(-each * along / width),
+        -(each * away).sum(axis=0) if abs(x[4]) < 3 else np.zeros(len(offsets)),
+        np.ones(len(offsets)),
+        whole,
+    ]
+    return np.stack(columns, axis=1)

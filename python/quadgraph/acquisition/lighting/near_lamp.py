@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import OptimizeResult, least_squares, nnls
+from scipy.optimize import OptimizeResult, least_squares
 
 from quadgraph.acquisition.lighting.board_whites import Whites
 from quadgraph.base.errors import InputError
@@ -124,8 +124,7 @@ def _starts(samples: _Samples) -> list[np.ndarray]:
     lamps = middle + (_DISTANCES[:, None, None] * size * ways).reshape(-1, 3)
     weights = 1 / samples.deviations.mean(axis=1)
     grey = samples.values.mean(axis=1) * weights
-    shapes = _lit(samples.places, lamps) * weights
-    off = np.array([_misfit(shape, weights, grey) for shape in shapes])
+    off = _misfits(_lit(samples.places, lamps) * weights, weights, grey)
     starts = []
     for lamp in lamps[np.argsort(off)[:_STARTS]]:
         lit = _lit(samples.places, lamp[None])[0]
@@ -143,10 +142,22 @@ def _turned(unknowns: np.ndarray, samples: _Samples) -> np.ndarray:
     return np.concatenate([start, samples.places.mean(axis=0)[:2]]) if forwards else start
 
 
-def _misfit(shape: np.ndarray, even: np.ndarray, grey: np.ndarray) -> float:
-    """What is left of the samples by the best power and the best other light, neither of them below nothing."""
-    columns = np.stack([shape, even], axis=1)
-    return float(nnls(columns / np.linalg.norm(columns, axis=0), grey)[1])
+def _misfits(shapes: np.ndarray, even: np.ndarray, grey: np.ndarray) -> np.ndarray:
+    """(m,) squares of what is left of the samples, (n,), by the best power of each shape, (m, n), and the best other
+    light, neither of them below nothing.
+    """
+    lengths = np.linalg.norm(shapes, axis=1)
+    even = even / np.linalg.norm(even)
+    both, shown, other = shapes @ even / lengths, shapes @ grey / lengths, float(even @ grey)
+    apart = np.maximum(1 - both**2, 1e-12)
+    power, ambient = (shown - both * other) / apart, (other - both * shown) / apart
+    alone = np.maximum(shown, 0)
+    power, ambient = (
+        np.where(power < 0, 0, np.where(ambient < 0, alone, power)),
+        np.where(power < 0, max(other, 0), np.where(ambient < 0, 0, ambient)),
+    )
+    told = power**2 + ambient**2 + 2 * power * ambient * both - 2 * power * shown - 2 * ambient * other
+    return np.asarray(grey @ grey + told)
 
 
 def _place(unknowns: np.ndarray) -> np.ndarray:
@@ -175,10 +186,56 @@ def _off(unknowns: np.ndarray, samples: _Samples) -> np.ndarray:
     return np.append(off.ravel(), unknowns[6] / _CLEAR_FALL)
 
 
+def _slopes(unknowns: np.ndarray, samples: _Samples) -> np.ndarray:
+    """Derivatives of `_off` with respect to the unknowns."""
+    count = len(samples.places)
+    shape, shape_slopes = _shape(unknowns, samples.places), _shape_slopes(unknowns, samples.places)
+    power = np.exp(np.clip(unknowns[3:6], -700, 700))
+    told = samples.photographs >= _LEAST_FOR_FALL
+    fall = np.exp(-(unknowns[6] if told else 0.0) * samples.slopes2)
+    weights = fall[:, None] / np.pi / samples.deviations
+    found = np.zeros((count, 3, len(unknowns)))
+    lit = shape[:, None] * power
+    placed = (weights * power)[:, :, None] * shape_slopes[:, None]
+    found[:, :, :3], found[:, :, _AROUND:] = placed[:, :, :3], placed[:, :, 3:]
+    for channel in range(3):
+        found[:, channel, 3 + channel] = weights[:, channel] * lit[:, channel]
+        found[:, channel, 7 + channel] = weights[:, channel]
+    if told:
+        found[:, :, 6] = -samples.slopes2[:, None] * weights * (lit + unknowns[7:_AROUND])
+    last = np.zeros((1, len(unknowns)))
+    last[0, 6] = 1 / _CLEAR_FALL
+    return np.concatenate([found.reshape(3 * count, -1), last])
+
+
+def _shape_slopes(unknowns: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """(n, 3) derivatives of `_shape` with respect to x, y and the logarithm of z; (n, 5), and to where the axis meets
+    the paper, of a lamp that shines forwards.
+    """
+    lamp = _place(unknowns)
+    away = lamp - places
+    distance = np.linalg.norm(away, axis=1)[:, None]
+    lit = away[:, 2:] / (4 * np.pi * distance**3)
+    slopes = np.array([0, 0, 1.0]) / (4 * np.pi * distance**3) - 3 * lit * away / distance**2
+    if len(unknowns) > _AROUND:
+        axis = np.array([*unknowns[_AROUND:], 0.0]) - lamp
+        length = float(np.linalg.norm(axis))
+        cosine = -(away @ axis)[:, None] / length / distance
+        by_way = axis / (length * distance) + cosine * away / distance**2
+        by_axis = -away / (length * distance) - cosine * axis / length**2
+        shines = 4.0 * (cosine > 0)
+        placed = shines * (cosine * slopes - lit * (by_way + by_axis))
+        slopes = np.concatenate([placed, shines * lit * by_axis[:, :2]], axis=1)
+    slopes[:, 2] *= lamp[2] if abs(unknowns[2]) < 20 else 0.0
+    return np.asarray(slopes)
+
+
 def _solved(samples: _Samples, start: np.ndarray, most: int = _LONG) -> OptimizeResult:
     other = 0.1 * np.pi * np.abs(samples.values).mean(axis=0) + 1e-300
     scale = np.concatenate([[100.0, 100.0], np.ones(5), other, np.full(len(start) - _AROUND, 100.0)])
-    return least_squares(_off, start, x_scale=scale, loss="soft_l1", f_scale=_ROBUST, args=(samples,), max_nfev=most)
+    return least_squares(
+        _off, start, _slopes, x_scale=scale, loss="soft_l1", f_scale=_ROBUST, args=(samples,), max_nfev=most
+    )
 
 
 def _matt(samples: _Samples, lamp: np.ndarray) -> np.ndarray:
