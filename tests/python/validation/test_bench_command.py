@@ -11,7 +11,7 @@ import pytest
 
 from baked import write_levels
 from quadgraph import cli
-from quadgraph_validation.benchmark import figures, scaling
+from quadgraph_validation.benchmark import figures, forecast, scaling
 from quadgraph_validation.benchmark.bench_scene import Device
 from quadgraph_validation.benchmark.frame_passes import METHODS
 from quadgraph_validation.benchmark.solver_convergence import TARGETS, WAYS
@@ -76,6 +76,25 @@ def test_passes_have_time_bytes_and_a_share_of_copying_in_both_orders(sphere, tm
     printed = capsys.readouterr().out
     for words in ("in blocks, and at random", "of copying", "cost of a solution", record["device"]):
         assert words in printed
+
+
+def test_a_forecast_adds_up_what_passes_move_and_what_dispatches_cost(sphere, tmp_path, capsys):
+    kinds = bench(tmp_path, sphere, "--live", "--forecast", "100,5")["live"]["kinds"]
+    said = capsys.readouterr().out
+    for kind in kinds:
+        found = kind["forecast"]
+        assert found["moving_ms"] == pytest.approx(sum(entry["bytes"] for entry in kind["passes"]) / 1e8)
+        assert found["dispatching_ms"] == pytest.approx(5e-3 * sum(entry["count"] for entry in kind["passes"]))
+        assert found["ms"] == pytest.approx(found["moving_ms"] + found["dispatching_ms"])
+        assert f"{kind['changes']} changing: at least" in " ".join(said.split())
+    walked = forecast.parse("100,5,0.001").of(kinds[0])
+    assert walked["moving_ms"] >= kinds[0]["walk_segments"] > kinds[0]["forecast"]["moving_ms"]  # a tet a millisecond
+    for text in ("100", "0,3", "100,x", "1,2,3,4", "-1,2"):
+        with pytest.raises(SystemExit):
+            cli.main(["bench", sphere, "--live", f"--forecast={text}"])
+        assert "allowed is GB/S,US or GB/S,US,M" in capsys.readouterr().err
+    assert cli.main(["bench", sphere, "--passes", "--forecast", "100,5"]) == 1
+    assert "--forecast belongs to --live, which is absent" in capsys.readouterr().err
 
 
 def test_live_frames_do_more_the_more_changes(sphere, tmp_path, capsys):

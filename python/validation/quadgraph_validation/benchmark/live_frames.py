@@ -72,6 +72,7 @@ def _measure(file: Any, stage: Any, name: str, repeats: int, copy_gb_per_s: floa
         "changes": name,
         "wall_ms": statistics.median(wall_ms),
         "off": _off(stage.engine),
+        "walk_segments": statistics.median(segments_of),
         "walk_segments_per_s": statistics.median(map(_segments_per_s, segments_of, passes)),
         "passes": median_passes(list(passes), copy_gb_per_s),
         "frames": frame_figures(list(passes)) | {"": figures.times(wall_ms)},

@@ -18,12 +18,13 @@ from quadgraph_validation.base.machine import machine
 
 if TYPE_CHECKING:
     from quadgraph.base.progress import ProgressCallback
+    from quadgraph_validation.benchmark.forecast import FrameForecast
 
 _TABLE_WIDTH = 140  # characters; narrower, the tables cannot be read
 _SLOWER = 3  # exit status
 _MEASURING = (
     *("file", "passes", "solvers", "live", "rivals", "scaling", "growth"),
-    *("sizes", "side", "random_order", "bodies", "chart", "json", "device", "validation"),
+    *("sizes", "side", "forecast", "random_order", "bodies", "chart", "json", "device", "validation"),
 )
 _RULE = (
     "A figure is the median of its runs. It is slower, or faster, if it changed by more than 2% and by more than the "
@@ -44,22 +45,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         nargs="?",
         help="a baked .qgraph (default: pymeshlab's bunny, baked for the occasion in three sizes)",
     )
-    what = parser.add_argument_group("what is measured (default: --passes and --solvers)")
-    what.add_argument("--passes", action="store_true", help="ms, bytes, GB/s and share of copying of every pass")
-    what.add_argument("--solvers", action="store_true", help="error against work and time, all solvers")
-    what.add_argument("--live", action="store_true", help="a frame while light, material and shape change, by pass")
-    what.add_argument("--side", type=positive_int, metavar="N", help="pixels a side of --live (default: 512)")
-    what.add_argument("--rivals", action="store_true", help="SciPy's CG and PyAMG on the identical system")
-    what.add_argument("--scaling", action="store_true", help="cycles and time from 3 thousand to 2 million tets")
-    what.add_argument(
-        "--sizes",
-        type=_sizes,
-        metavar="N,N,...",
-        help="surface vertices of the bodies of --scaling (default: 500 to 330 thousand)",
-    )
-    what.add_argument(
-        "--growth", action="store_true", help="bakes and acquisitions by size, lights and workers (docs/scaling.md)"
-    )
+    _add_what(parser)
     parser.add_argument(
         "--random-order",
         type=Path,
@@ -92,6 +78,38 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     )
 
 
+def _add_what(parser: argparse.ArgumentParser) -> None:
+    what = parser.add_argument_group("what is measured (default: --passes and --solvers)")
+    what.add_argument("--passes", action="store_true", help="ms, bytes, GB/s and share of copying of every pass")
+    what.add_argument("--solvers", action="store_true", help="error against work and time, all solvers")
+    what.add_argument("--live", action="store_true", help="a frame while light, material and shape change, by pass")
+    what.add_argument("--side", type=positive_int, metavar="N", help="pixels a side of --live (default: 512)")
+    what.add_argument(
+        "--forecast",
+        type=_forecast,
+        metavar="GB/S,US[,M]",
+        help="what the frames of --live take at least on a device of such a bandwidth, microseconds a dispatch, and "
+        "million tets that rays cross a second",
+    )
+    what.add_argument("--rivals", action="store_true", help="SciPy's CG and PyAMG on the identical system")
+    what.add_argument("--scaling", action="store_true", help="cycles and time from 3 thousand to 2 million tets")
+    what.add_argument(
+        "--sizes",
+        type=_sizes,
+        metavar="N,N,...",
+        help="surface vertices of the bodies of --scaling (default: 500 to 330 thousand)",
+    )
+    what.add_argument(
+        "--growth", action="store_true", help="bakes and acquisitions by size, lights and workers (docs/scaling.md)"
+    )
+
+
+def _forecast(text: str) -> FrameForecast:
+    from quadgraph_validation.benchmark import forecast
+
+    return forecast.parse(text)
+
+
 def _sizes(text: str) -> tuple[int, ...]:
     return tuple(positive_int(part) for part in text.split(","))
 
@@ -122,7 +140,8 @@ def run(args: argparse.Namespace) -> int:
     record["figures"] = figures.of(record)
     console.print(", ".join(f"{key}: {record[key]}" for key in ("device", "driver", "cores", "load", "commit")))
     console.print(bench_tables.copy_text(record["copy"]))
-    for table in bench_tables.all_of(record):
+    forecasts = [args.forecast.table(kind) for kind in record["live"]["kinds"]] if args.forecast else []
+    for table in [*bench_tables.all_of(record), *forecasts]:
         console.print(table)
     _write(args, record)
     print(figures.line(record))
@@ -159,6 +178,9 @@ def _measure(args: argparse.Namespace, folder: Path, copied: dict[str, Any], tel
             record[name] = getattr(parts, name)()
     if args.live:
         record["live"] = parts.live(args.side or SIDE)
+        if args.forecast:
+            for kind in record["live"]["kinds"]:
+                kind["forecast"] = args.forecast.of(kind)
     if args.scaling:
         record["scaling"] = parts.scaling(args.sizes or SURFACE_VERTICES)
     return record
@@ -173,6 +195,8 @@ def _check(args: argparse.Namespace) -> None:
         raise InputError("--random-order needs --passes and the FILE to compare with")
     if args.side and not args.live:
         raise InputError("--side belongs to --live, which is absent")
+    if args.forecast and not args.live:
+        raise InputError("--forecast belongs to --live, which is absent")
     if args.sizes and not args.scaling:
         raise InputError("--sizes belongs to --scaling, which is absent")
     if args.chart:
