@@ -14,6 +14,7 @@ import lit_boards
 from quadgraph import core
 from quadgraph.acquisition.board.board import Board
 from quadgraph.acquisition.cameras.lens import PinholeView, project
+from quadgraph.acquisition.cameras.rigid_placement import Placement
 from quadgraph.acquisition.capture.radiance import Radiance
 from quadgraph.acquisition.session import background_masks, session_file
 from quadgraph.base.errors import InputError
@@ -137,6 +138,47 @@ def test_the_mask_shows_where_the_body_is_and_not_where_it_is_stated(session):
         apart = np.linalg.norm(true - wrong)
         assert np.linalg.norm(where - true) < 0.35 * apart  # the view is about the stated place, and cuts a part off
         assert apart > 8
+
+
+def test_masks_tell_where_the_body_lies(session, tmp_path, capsys):
+    """Stated is a place 12 mm beside."""
+    document = json.loads((session / "session.json").read_text())
+    made, path = tmp_path / "capture.json", session / "fitted.json"
+    path.write_text(json.dumps(document | {"pose": document["pose"] | {"fit": True}}))
+    assert main(["capture", "import", str(path), "-o", str(made)]) == 0
+    step = json.loads(made.read_text())["deformation"][0]
+    turn = Placement(1.0, tuple(step["axis"]), step["degrees"], np.zeros(3)).rotation
+    middle = turn @ [0, 0, board_session.RADIUS] + step["translate"]
+    np.testing.assert_allclose(middle, board_session.MIDDLE, atol=0.2)
+    record = json.loads((tmp_path / "capture-import.json").read_text())["pose"]
+    assert record["photographs"] == 4
+    assert record["symmetric"]
+    assert record["off"] < 1
+    assert abs(record["lowest"]) < 0.2
+    capsys.readouterr()
+    assert main(["capture", "check", str(made), "--page", str(tmp_path / "check.html")]) == 0
+    assert "pose: by 4 masks, " in (said := capsys.readouterr().out)
+    assert "it looks the same turned otherwise; its lowest place is " in said
+    assert "pose</b>: by 4 masks" in (tmp_path / "check.html").read_text()
+
+
+def test_a_pose_that_masks_cannot_tell_is_named(session, tmp_path, capsys):
+    document = json.loads((session / "session.json").read_text())
+    shots = [{name: each for name, each in shot.items() if name != "background"} for shot in document["photographs"]]
+    path = session / f"{tmp_path.name}.json"
+    for pose, shown, said in (
+        ({"fit": 1}, document["photographs"], "pose.fit: found 1, allowed are true, by masks, and false"),
+        ({"fit": True}, shots, "pose.fit: found true, 0 photographs have a mask or a background, allowed are 2"),
+    ):
+        path.write_text(json.dumps(document | {"pose": pose, "photographs": shown}))
+        with pytest.raises(InputError) as error:
+            session_file.read(path)
+        assert said in str(error.value)
+    path.write_text(json.dumps(document | {"pose": {"fit": True}, "unit": "cm"}))
+    assert main(["capture", "import", str(path), "-o", str(tmp_path / "capture.json")]) == 1
+    assert "pose.fit: where it fits best the body shares" in (said := capsys.readouterr().err)
+    assert "is it the mesh of this body, in this unit" in said
+    assert not (tmp_path / "capture.json").exists()
 
 
 @pytest.mark.parametrize(

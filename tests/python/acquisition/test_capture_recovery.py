@@ -15,8 +15,12 @@ import board_session
 import foreign_files
 import lit_boards
 import twin_capture
+from outlined_bodies import masks_of, roughened
+from quadgraph import core
 from quadgraph.acquisition.board.board import Board
 from quadgraph.acquisition.cameras.lens import Pose, view_towards
+from quadgraph.acquisition.cameras.placed_body import PlacedBody
+from quadgraph.base import image_file
 from quadgraph.cli import main
 
 pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
@@ -148,6 +152,29 @@ def test_masks_from_backgrounds_tell_a_body_that_lies_elsewhere(photographed, be
     assert not said["findings"]
     for key, true in twin_capture.TRUTH.items():
         np.testing.assert_allclose(said["coefficients"][key], true, rtol=0.06)
+
+
+@pytest.mark.long
+def test_a_body_whose_pose_masks_tell_is_recovered(photographed):
+    """Nothing is stated of where it lies; edges of the masks are a pixel off, as by hand."""
+    folder, document, gain = photographed
+    display = core.load(folder / "potato.qgraph").display
+    triangles = np.asarray(display["triangles"]).reshape(-1, 3)
+    body = PlacedBody(np.asarray(display["vertices"], float) + PLACE, triangles)
+    generator = np.random.default_rng(8)
+    shots = []
+    for number, mask in enumerate(masks_of(body, board_session.cameras()[::3])):
+        drawn = np.where(roughened(mask, 1.0, generator), 255, 0).astype(np.uint8)
+        image_file.write(folder / f"hand-{number}.png", drawn)
+        shots.append(document["photographs"][number] | {"gain": gain, "mask": f"hand-{number}.png"})
+    (folder / "fitted.json").write_text(json.dumps(document | {"photographs": shots, "pose": {"fit": True}}))
+    errors = recovered(folder, "fitted")
+    step = json.loads((folder / "fitted-capture.json").read_text())["deformation"][0]
+    told = json.loads((folder / "fitted-capture-import.json").read_text())["pose"]
+    off = np.linalg.norm(np.array(step["translate"]) - PLACE)
+    print("\npose:", step, told, "mm off:", off, "coefficients:", errors)
+    assert off < 0.5
+    assert np.abs(errors).max() < 0.08
 
 
 @pytest.mark.long

@@ -16,8 +16,8 @@ from quadgraph.acquisition.cameras.placed_body import FLAT, PlacedBody, of_captu
 from quadgraph.acquisition.capture import photographs
 from quadgraph.acquisition.capture.capture import Capture
 from quadgraph.acquisition.capture.photographs import Measured
-from quadgraph.acquisition.checking import import_record, lamp_check
-from quadgraph.acquisition.checking.import_record import FoundLamp, Imported, Record
+from quadgraph.acquisition.checking import import_record, lamp_check, pose_check
+from quadgraph.acquisition.checking.import_record import FoundLamp, Imported, PoseByMasks, Record
 
 SAMPLES = 4000  # places of the surface
 _LEAST_BODY = 16  # pixels, as acquire wants them
@@ -104,6 +104,7 @@ class Checked:
             parts.append(f"body {each.body:.0%} of it, of which {each.counts:.0%} counts, {each.signal:.0f} deviations")
             lines.append(f"{'; '.join(parts)}: {each.verdict}")
         lines += [f"lamp {name}: {lamp.line()}" for name, lamp in self.lamps().items()]
+        lines += [f"pose: {self.pose.line()}"] if self.pose else []
         lines.append(f"scale: {self.scale()}")
         lines.append(
             f"surface: {self.seen:.0%} seen, {self.twice:.0%} twice or more, {self.used:.0%} seen and lit; cameras up "
@@ -116,6 +117,11 @@ class Checked:
     def lamps(self) -> Mapping[str, FoundLamp]:
         """Those that photographs of the board told, by their names."""
         return self.record.lamps if self.record else {}
+
+    @property
+    def pose(self) -> PoseByMasks | None:
+        """That of the body, where masks told it."""
+        return self.record.pose if self.record else None
 
     def scale(self) -> str:
         """What the lengths rest on."""
@@ -144,7 +150,8 @@ class Checked:
         surface = {"seen": self.seen, "twice": self.twice, "seen_and_lit": self.used}
         whole = {"unusable": self.reasons(), "look_at": self.doubts(), "scale": self.scale()}
         lamps = {name: asdict(lamp) for name, lamp in self.lamps().items()}
-        return {**whole, "lamps": lamps, "surface": surface, "widest": self.widest, "photographs": each}
+        pose = asdict(self.pose) if self.pose else None
+        return {**whole, "lamps": lamps, "pose": pose, "surface": surface, "widest": self.widest, "photographs": each}
 
 
 def record_of(path: Path) -> Path:
@@ -182,6 +189,7 @@ def check(capture: Capture) -> Checked:
     )
     _judge_whole(checked, places)
     lamp_check.judge(checked.lamps(), checked.said, checked.wrong)
+    pose_check.judge(checked.pose, checked.said)
     return checked
 
 

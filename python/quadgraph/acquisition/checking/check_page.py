@@ -70,6 +70,7 @@ def page(checked: Checked) -> str:
     body += [_tiles(checked), *_said(checked)]
     body += ["<h2>Where cameras and lights are</h2>", '<div class="row">', *plan_drawings.plans(checked), "</div>"]
     body += [f"<p><b>{html.escape(name)}</b>: {html.escape(lamp.line())}</p>" for name, lamp in checked.lamps().items()]
+    body += [f"<p><b>pose</b>: {html.escape(checked.pose.line())}</p>"] if checked.pose else []
     body += ["<h2>What of the surface is covered</h2>", _covered(checked)]
     body += [
         "<h2>Photographs</h2>",

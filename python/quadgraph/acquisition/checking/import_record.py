@@ -64,14 +64,38 @@ class FoundLamp:
 
 
 @dataclass(frozen=True)
+class PoseByMasks:
+    """Of the body, as `pose_search.FoundPose` has it; lowest: its lowest place over the board, mm."""
+
+    off: float
+    shared: float
+    degrees: float | None
+    mm: float | None
+    photographs: int
+    symmetric: bool
+    others: Mapping[str, float]
+    lowest: float
+
+    def line(self) -> str:
+        """How certain it is."""
+        told = "" if self.degrees is None else f", turned to {self.degrees:.2g} degrees and placed to {self.mm:.2g} mm"
+        alike = "; it looks the same turned otherwise" if self.symmetric else ""
+        return (
+            f"by {self.photographs} masks, {self.off:.2f} pixels off (RMS){told}{alike}; its lowest place is "
+            f"{self.lowest:+.2f} mm over the board"
+        )
+
+
+@dataclass(frozen=True)
 class Record:
     """printed: what the two rulers measure, mm, None without a board; photographs: by the names of their cameras;
-    lamps: those that the board told, by their names.
+    lamps: those that the board told, by their names; pose: of the body, None where it was stated.
     """
 
     printed: tuple[float, float] | None
     photographs: Mapping[str, Imported]
     lamps: Mapping[str, FoundLamp] = field(default_factory=dict)
+    pose: PoseByMasks | None = None
 
 
 def place_of(path: Path) -> Path:
@@ -90,7 +114,7 @@ def read(capture: Path) -> Record | None:
         raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
     except InputError as error:
         raise InputError(f"{path}: {error}; import again, or remove it") from None
-    members = document.members(("quadgraph_import", "noise", "lenses", "board", "photographs"), ("lamps",))
+    members = document.members(("quadgraph_import", "noise", "lenses", "board", "photographs"), ("lamps", "pose"))
     members["quadgraph_import"].whole(1, 1, "the version of this format")
     printed = None
     if members["board"].value is not None:
@@ -102,7 +126,27 @@ def read(capture: Path) -> Record | None:
         own = each.members(_MEMBERS, ("reprojection", "left_out", "corners"))
         found[own["photograph"].text("its camera")] = _imported(own)
     lamps = members["lamps"].value and members["lamps"].named() if "lamps" in members else {}
-    return Record(printed, found, {name: found_lamp(each) for name, each in (lamps or {}).items()})
+    pose = found_pose(members["pose"]) if "pose" in members else None
+    return Record(printed, found, {name: found_lamp(each) for name, each in (lamps or {}).items()}, pose)
+
+
+def found_pose(member: Member) -> PoseByMasks:
+    """The pose of a record. Raises InputError."""
+    own = member.members(("off", "shared", "degrees", "mm", "photographs", "symmetric", "others", "lowest"), ())
+    degrees, mm = (
+        None if own[name].value is None else own[name].number(0, _FAR, "a deviation") for name in ("degrees", "mm")
+    )
+    others = own["others"].named() if own["others"].value else {}
+    return PoseByMasks(
+        own["off"].number(0, _FAR, "pixels"),
+        own["shared"].number(0, 1, "share of masks and outlines"),
+        degrees,
+        mm,
+        own["photographs"].whole(1, MOST_PHOTOGRAPHS, "photographs"),
+        own["symmetric"].value is True,
+        {path: each.number(0, 1, "share of a mask and the body") for path, each in others.items()},
+        own["lowest"].number(-_FAR, _FAR, "mm"),
+    )
 
 
 def found_lamp(member: Member) -> FoundLamp:

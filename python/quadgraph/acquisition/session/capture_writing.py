@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 from scipy import ndimage
 
-from quadgraph import core
 from quadgraph.acquisition.board.board import RULER_MM
 from quadgraph.acquisition.cameras.lens import Lens, PinholeView, view_towards
 from quadgraph.acquisition.cameras.placed_body import PlacedBody
@@ -19,6 +18,7 @@ from quadgraph.acquisition.lighting.near_lamp import NearLamp
 from quadgraph.acquisition.session import exr_writer, light_finding, resampling
 from quadgraph.acquisition.session.exposures import ShotContent
 from quadgraph.acquisition.session.locating import LocatedCamera
+from quadgraph.acquisition.session.pose_finding import PlacedByMasks
 from quadgraph.acquisition.session.session_file import Session
 from quadgraph.acquisition.session.shots import Shot
 from quadgraph.base import image_file
@@ -59,17 +59,6 @@ def view_of(session: Session, shot: Shot, camera: LocatedCamera, body: PlacedBod
     if camera.pose.seen(body.middle[None])[0, 2] <= 0:
         raise InputError(f"{session.path}: {shot.path}: the body is behind the camera; check pose and world")
     return view_towards(camera.pose.eye, body.middle, _MARGIN * body.radius, session.size)
-
-
-def kept_of(session: Session, shot: Shot, radiance: Radiance) -> np.ndarray | None:
-    """(h, w) what the mask of a shot keeps of its photograph. Raises InputError."""
-    if shot.mask is None:
-        return None
-    kept = np.asarray(core.read_image(shot.mask)).min(axis=2) > 0.5
-    if kept.shape != radiance.values.shape[:2]:
-        size, allowed = (" x ".join(map(str, each[1::-1])) for each in (kept.shape, radiance.values.shape))
-        raise InputError(f"{session.path}: {shot.path}.mask: {shot.mask.name} has {size} pixels, allowed are {allowed}")
-    return kept
 
 
 def picture_of(
@@ -143,6 +132,7 @@ def record(
     cameras: dict[str, LocatedCamera],
     views: dict[str, PinholeView],
     lamps: dict[str, NearLamp],
+    place: PlacedByMasks | None,
 ) -> dict[str, Any]:
     """What was found, for `capture check` and whoever reads it; lengths mm, places pixels of the photograph."""
     photographs = []
@@ -174,7 +164,15 @@ def record(
         else {"size": (board.size * np.array(board.printed) / RULER_MM).tolist(), "printed": list(board.printed)},
         "lamps": {name: _lamp(session, name, lamp, found, cameras) for name, lamp in lamps.items()},
         "photographs": photographs,
+        **({} if place is None else {"pose": _pose(place)}),
     }
+
+
+def _pose(place: PlacedByMasks) -> dict[str, Any]:
+    """A pose that masks told: how far off and how certain it is; None where two photographs told it."""
+    found = place.found
+    numbers = ("off", "shared", "degrees", "mm", "photographs", "symmetric", "others")
+    return {each: getattr(found, each) for each in numbers} | {"lowest": place.lowest}
 
 
 def _lamp(

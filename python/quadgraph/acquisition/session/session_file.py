@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -26,13 +26,16 @@ VERSION = 1
 MOST_BLACK = 64
 DEFAULT_SIZE = 320  # pixels of the square pictures of a capture
 _FAR_MM = 1e6
+_PLACED = ("axis", "degrees", "translate")  # of `pose` and `world`
+_LEAST_MASKED = 2  # photographs, by whose masks a pose is told
 _LARGEST = 1e15
 
 
 @dataclass(frozen=True)
 class Session:
     """A whole session. cameras: a file or folder of another program; world: how its world becomes the board's; board:
-    None where cameras tell all; placement: of the body on the board; noise, saturation: of values where 1 is full
+    None where cameras tell all; placement: of the body on the board; pose_fit: whether masks
+    tell it, pose_near: nearby what is stated; noise, saturation: of values where 1 is full
     scale, None: estimated, and as the kind of file has it; black: exposures with the lens covered; size: pixels.
     """
 
@@ -45,6 +48,8 @@ class Session:
     eta: float
     polarised: bool
     placement: Placement
+    pose_fit: bool
+    pose_near: bool
     lights: Mapping[str, dict[str, Any]]
     lamps: Mapping[str, LampStatement]
     projectors: Mapping[str, ProjectorStatement]
@@ -101,16 +106,17 @@ def _session(path: Path, document: Member) -> Session:
     lights = light_statements.read(members["lights"], folder, "board" in members)
     names = list(members["lights"].named())
     unit, size, saturation = members.get("unit"), members.get("size"), members.get("saturation")
+    shots = tuple(read_shot(each, folder, names) for each in members["photographs"].items(capture.MOST_PHOTOGRAPHS))
     return Session(
         path,
         _board(members["board"]) if "board" in members else None,
         _place(cameras, folder) if cameras else None,
-        _placement(members["world"], True) if "world" in members else None,
+        _placement(members["world"].members((), (*_PLACED, "scale"))) if "world" in members else None,
         capture.file_of(members["body"], folder, "a baked .qgraph or a mesh"),
         unit.one_of(tuple(UNITS_MM), "say the unit of the mesh's coordinates") if unit else None,
         members["eta"].number(1, 3, "index of refraction inside over outside"),
         bool(polarised and polarised.value),
-        _placement(members["pose"], False) if "pose" in members else Placement(1.0, (0, 0, 1), 0.0, np.zeros(3)),
+        *_pose(members.get("pose"), shots),
         lights.known,
         lights.lamps,
         lights.projectors,
@@ -122,7 +128,7 @@ def _session(path: Path, document: Member) -> Session:
         if black
         else (),
         size.whole(8, capture.MOST_SIDE, "pixels of the capture's pictures") if size else DEFAULT_SIZE,
-        tuple(read_shot(each, folder, names) for each in members["photographs"].items(capture.MOST_PHOTOGRAPHS)),
+        shots,
     )
 
 
@@ -169,8 +175,21 @@ def _pair(member: Member | None, otherwise: tuple[int, int], low: int) -> tuple[
     return found[0], found[1]
 
 
-def _placement(member: Member, scaled: bool) -> Placement:
-    members = member.members((), ("axis", "degrees", "translate", *(("scale",) if scaled else ())))
+def _pose(member: Member | None, shots: Sequence[Shot]) -> tuple[Placement, bool, bool]:
+    """Of the body: what is stated, whether masks tell it, and whether that is nearby."""
+    if member is None:
+        return _placement({}), False, False
+    members = member.members((), (*_PLACED, "fit"))
+    fit = members.pop("fit", None)
+    if fit is not None and not isinstance(fit.value, bool):
+        fit.wrong("allowed are true, by masks, and false")
+    masked = sum(1 for shot in shots if shot.mask or shot.background)
+    if fit is not None and fit.value and masked < _LEAST_MASKED:
+        fit.wrong(f"{masked} photographs have a mask or a background, allowed are {_LEAST_MASKED} or more")
+    return _placement(members), bool(fit and fit.value), bool(members)
+
+
+def _placement(members: Mapping[str, Member]) -> Placement:
     axis = _triple(members["axis"], "direction") if "axis" in members else [0.0, 0.0, 1.0]
     if not any(axis):
         members["axis"].wrong("allowed is any direction but zero")
