@@ -115,7 +115,7 @@ def test_an_interrupted_picture_goes_on_to_the_same_picture(tmp_path, monkeypatc
 def test_the_committed_pictures_of_the_sphere_are_what_walks_say(request, tmp_path):
     found = walk_truth.make(SPHERE, 300_000, tmp_path, QUIET)
     pictures = request.config.rootpath / "docs" / "benchmarks" / "truth"
-    rows = cross_checks.sphere(300_000, tmp_path, pictures, QUIET, pmmc=False)
+    rows = cross_checks.sphere(300_000, tmp_path, pictures, QUIET)
     eyes = [row for row in rows if "path tracing" in row.others]
     assert len(eyes) == len(SPHERE.views)
     for row in eyes:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tempfile
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,7 @@ from quadgraph.api.solution import Solution
 from quadgraph.baking.pipeline import BakeOptions, bake
 from quadgraph.mesh.surface import Surface
 from quadgraph_validation.accuracy import unseen_engine
+from quadgraph_validation.accuracy.kept_rows import KeptRows, Row
 from quadgraph_validation.base import extra_module
 from quadgraph_validation.bodies import unseen_bodies, unseen_cases
 from quadgraph_validation.bodies.smooth_sky import SmoothSky
@@ -39,15 +41,21 @@ class CertificateRun:
     device: str = ""
 
 
-def run(wanted: CertificateRun) -> dict[str, Any]:
-    """Certify all bodies. Raises InputError, and what bakes and solves raise."""
+def run(wanted: CertificateRun, kept: KeptRows | None = None) -> dict[str, Any]:
+    """Certify all bodies, or what is not kept. Raises InputError, and what bakes and solves raise."""
     extra_module.load("numba", "walks")
-    rows = [_row(wanted.seed + number, wanted) for number in range(wanted.count)]
+    seeds = range(wanted.seed, wanted.seed + wanted.count)
+    cases = [(str(seed), partial(_row, seed, wanted)) for seed in seeds]
+    return record_of(wanted, (kept or KeptRows()).complete(cases))
+
+
+def record_of(wanted: CertificateRun, rows: list[Row]) -> dict[str, Any]:
+    """The record of a run with these rows."""
     settings = {"seed": wanted.seed, "seconds": wanted.seconds, "walks": wanted.walks}
     return settings | {"rows": rows, "summary": summary(rows)}
 
 
-def _row(seed: int, wanted: CertificateRun) -> dict[str, Any]:
+def _row(seed: int, wanted: CertificateRun) -> Row:
     case = unseen_cases.drawn(seed, unseen_bodies.surface_of(seed))
     solution, field, surface = _certified(case, wanted)
     assert solution.certificate is not None

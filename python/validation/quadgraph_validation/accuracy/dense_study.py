@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import functools
 import tempfile
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ from quadgraph.baking.pipeline import BakeOptions, bake
 from quadgraph.base.relative_error import relative_rms
 from quadgraph.mesh.patches import patches_of
 from quadgraph.mesh.surface import Surface
+from quadgraph_validation.accuracy.kept_rows import KeptRows, Row
 from quadgraph_validation.bodies import unseen_bodies
 
 LIGHT = "directional:0,0,-1:1"
@@ -46,16 +48,29 @@ CASES = (
 )
 
 
-def run(device: str, _meshes: Path, names: Sequence[str]) -> dict[str, Any]:
-    """What the default solve shows of each of CASES, or of those materials alone; the finer ball is smooth by angle."""
-    cases = [case for case in CASES if not names or case[0] in names]
+@dataclass(frozen=True)
+class DenseRun:
+    """device: as Engine takes it; baked: folder in which all balls are, by `bake_ball`; empty: they are to be baked."""
+
+    device: str = ""
+    baked: str = ""
+
+
+def run(wanted: DenseRun, kept: KeptRows | None = None) -> dict[str, Any]:
+    """What the default solve shows of each of CASES, or of what is not kept; the finer ball is smooth by angle."""
     with tempfile.TemporaryDirectory(prefix="quadgraph-dense-") as folder:
-        files = {ball: _baked(ball, Path(folder)) for _, ball in cases}
-        return {
-            "light": LIGHT,
-            "bands": BANDS,
-            "rows": [_row(material, ball, *files[ball], device) for material, ball in cases],
-        }
+
+        @functools.cache
+        def baked(ball: DenseBall, finer: bool) -> Path:
+            return (file_of if wanted.baked else bake_ball)(ball, finer, Path(wanted.baked or folder))
+
+        cases = [(case[0], functools.partial(_row, *case, baked, wanted.device)) for case in CASES]
+        return record_of(wanted, (kept or KeptRows()).complete(cases))
+
+
+def record_of(_wanted: DenseRun, rows: list[Row]) -> dict[str, Any]:
+    """The record of a run with these rows."""
+    return {"light": LIGHT, "bands": BANDS, "rows": rows}
 
 
 def surface_of(radius: float, detail: int, seed: int | None) -> Surface:
@@ -69,22 +84,27 @@ def surface_of(radius: float, detail: int, seed: int | None) -> Surface:
     return Surface(vertices, np.array(mesh.faces, np.int64))
 
 
-def _baked(ball: DenseBall, folder: Path) -> tuple[Path, Path]:
-    """The ball by the default bake, and the finer one without what a ball does not need."""
-    files = []
-    for detail, seed, options in (
-        (DETAIL, ball.seed, BakeOptions(unit="mm")),
-        (FINER, None, BakeOptions(unit="mm", visibility_rays=0, interior="surface")),
-    ):
-        name = f"{ball.radius:g}-{detail}"
-        unseen_bodies.write(folder / f"{name}.ply", surface_of(ball.radius, detail, seed))
-        bake(folder / f"{name}.ply", folder / f"{name}.qgraph", options)
-        files.append(folder / f"{name}.qgraph")
-    return files[0], files[1]
+def file_of(ball: DenseBall, finer: bool, folder: Path) -> Path:
+    """Where the baked ball, or the finer one, is in a folder."""
+    return folder / f"{ball.radius:g}-{FINER if finer else DETAIL}.qgraph"
 
 
-def _row(material: str, ball: DenseBall, coarse: Path, fine: Path, device: str) -> dict[str, Any]:
-    with Engine(fine, device=device) as engine:
+def bake_ball(ball: DenseBall, finer: bool, folder: Path) -> Path:
+    """Bake the ball into a folder by the default bake, or the finer one without what a ball does not need; its file."""
+    file = file_of(ball, finer, folder)
+    if finer:
+        surface, options = surface_of(ball.radius, FINER, None), BakeOptions(visibility_rays=0, interior="surface")
+    else:
+        surface, options = surface_of(ball.radius, DETAIL, ball.seed), BakeOptions()
+    with tempfile.TemporaryDirectory(prefix="quadgraph-dense-") as place:
+        mesh = Path(place) / f"{file.stem}.ply"
+        unseen_bodies.write(mesh, surface)
+        bake(mesh, file, replace(options, unit="mm"))
+    return file
+
+
+def _row(material: str, ball: DenseBall, baked: Callable[[DenseBall, bool], Path], device: str) -> Row:
+    with Engine(baked(ball, True), device=device) as engine:
         engine.material, engine.lights = material, [LIGHT]
         engine.solve(sweeps=SWEEPS)
         field = engine.surface()
@@ -93,7 +113,7 @@ def _row(material: str, ball: DenseBall, coarse: Path, fine: Path, device: str) 
     used = np.unique(which)
     middle = np.array([angle[which == k].mean() for k in used])
     mean = np.maximum([exitance[which == k].mean(axis=0) for k in used], 1e-12)
-    with Engine(coarse, device=device) as engine:
+    with Engine(baked(ball, False), device=device) as engine:
         engine.material, engine.lights = material, [LIGHT]
         printed = engine.solve().error
         field = engine.surface()

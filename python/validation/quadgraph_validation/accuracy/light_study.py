@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tempfile
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ from quadgraph.base.relative_error import relative_rms
 from quadgraph.core import load_core
 from quadgraph.mesh.patches import patches_of
 from quadgraph.mesh.surface import Surface
+from quadgraph_validation.accuracy.kept_rows import KeptRows, Row
 from quadgraph_validation.bodies import unseen_bodies, unseen_cases
 from quadgraph_validation.truth import face_light
 
@@ -37,14 +39,20 @@ class LightRun:
     device: str = ""
 
 
-def run(wanted: LightRun) -> dict[str, Any]:
-    """Judge all bodies. Raises what bakes and solves raise."""
+def run(wanted: LightRun, kept: KeptRows | None = None) -> dict[str, Any]:
+    """Judge all bodies, or what is not kept. Raises InputError, and what bakes and solves raise."""
+    seeds = range(wanted.seed, wanted.seed + wanted.count)
     with tempfile.TemporaryDirectory(prefix="quadgraph-light-") as folder:
-        rows = [_row(wanted.seed + number, wanted.device, Path(folder)) for number in range(wanted.count)]
+        cases = [(str(seed), partial(_row, seed, wanted.device, Path(folder))) for seed in seeds]
+        return record_of(wanted, (kept or KeptRows()).complete(cases))
+
+
+def record_of(wanted: LightRun, rows: list[Row]) -> dict[str, Any]:
+    """The record of a run with these rows."""
     return {"seed": wanted.seed, "vertices": VERTICES, "rows": rows, "summary": summary(rows)}
 
 
-def _row(seed: int, device: str, folder: Path) -> dict[str, Any]:
+def _row(seed: int, device: str, folder: Path) -> Row:
     surface = unseen_bodies.surface_of(seed)
     case = unseen_cases.drawn(seed, surface)
     unseen_bodies.write(folder / "body.ply", surface)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tempfile
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ from quadgraph.api.lights import AmbientLight, RectangleLight
 from quadgraph.api.options import Camera
 from quadgraph.baking.pipeline import BakeOptions, bake
 from quadgraph_validation.accuracy import unseen_engine
+from quadgraph_validation.accuracy.kept_rows import KeptRows, Row
 from quadgraph_validation.base import extra_module
 from quadgraph_validation.bodies import unseen_bodies, unseen_cases
 from quadgraph_validation.bodies.smooth_sky import SmoothSky
@@ -49,10 +51,16 @@ class Sight:
     fov: float
 
 
-def run(wanted: PicturesRun) -> dict[str, Any]:
-    """Judge all bodies. Raises InputError, and what bakes and solves raise."""
+def run(wanted: PicturesRun, kept: KeptRows | None = None) -> dict[str, Any]:
+    """Judge all bodies, or what is not kept. Raises InputError, and what bakes and solves raise."""
     extra_module.load("numba", "walks")
-    rows = [_row(drawn(wanted.seed + number), wanted) for number in range(wanted.count)]
+    seeds = range(wanted.seed, wanted.seed + wanted.count)
+    cases = [(str(seed), partial(_row, seed, wanted)) for seed in seeds]
+    return record_of(wanted, (kept or KeptRows()).complete(cases))
+
+
+def record_of(wanted: PicturesRun, rows: list[Row]) -> dict[str, Any]:
+    """The record of a run with these rows."""
     return {"seed": wanted.seed, "walks": wanted.walks, "pixels": PIXELS, "rows": rows, "summary": summary(rows)}
 
 
@@ -85,7 +93,8 @@ def _rectangle(generator: np.random.Generator, middle: np.ndarray, radius: float
     return RectangleLight(centre, u, v, float(f"{np.pi * (distance + radius) ** 2:.6g}"))
 
 
-def _row(sight: Sight, wanted: PicturesRun) -> dict[str, Any]:
+def _row(seed: int, wanted: PicturesRun) -> Row:
+    sight = drawn(seed)
     case = sight.case
     truth, deviation = truth_of(sight, wanted.walks)
     found, covered, stated = _pictures(sight, wanted.device)

@@ -23,12 +23,16 @@ def named(study: str, wanted: Any, scheduler: Scheduler) -> Callable[[Sequence[s
     """What makes the rows of cases by their names, of a study by its module and what is wanted of it."""
 
     def make(names: Sequence[str]) -> list[Row]:
-        given = {"study": study, "run": type(wanted).__name__, "wanted": asdict(wanted)}
-        function = f"{__name__}:named_row"
-        tasks = [Task(f"{study} {name}", function, given | {"name": name}) for name in names]
-        return run_tasks(tasks, scheduler, cache_folder() / LEDGER)
+        return run_tasks([row_task(study, wanted, name) for name in names], scheduler, cache_folder() / LEDGER)
 
     return make
+
+
+def row_task(study: str, wanted: Any, name: str, reads: tuple[Path, ...] = ()) -> Task:
+    """The task of one case. reads: files that are made before."""
+    asked = replace(wanted, seed=int(name), count=1) if name.isdigit() else wanted  # whatever else is asked for
+    given = {"study": study, "run": type(asked).__name__, "wanted": asdict(asked), "name": name}
+    return Task(f"{study} {name}", f"{__name__}:named_row", given, reads)
 
 
 def named_row(study: str, run: str, wanted: Mapping[str, Any], name: str) -> Row:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import importlib
+from functools import partial
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -70,7 +71,8 @@ ON_ENGINE = {
     "veined": "is what photographs are held against",
 }
 
-_BY_ROWS = ("acquire", "converging", "veined", "volume")  # studies whose cases have names
+# Studies whose cases have names.
+_BY_ROWS = ("acquire", "certificate", "converging", "dense", "light", "pictures", "veined", "volume")
 _BY_CASES = ("unseen", *_BY_ROWS)  # whose cases are independent
 
 _UNSEEN_WALKS, _ACQUIRE_WALKS, _VEINED_WALKS, _PICTURE_WALKS = 2_000_000, 8192, 20_000, 2000
@@ -221,28 +223,9 @@ def _write(args: argparse.Namespace, record: dict) -> None:
 def _run_on_engine(study: ModuleType, args: argparse.Namespace) -> dict:
     if args.study == "scenes":
         return study.run(args.device, args.meshes, args.truth or COMMITTED_TRUTH, args.scene, args.images)
-    if args.study == "light":
-        with Console(stderr=True).status("study: light"):
-            return study.run(study.LightRun(args.seed, args.count, args.device))
-    if args.study == "pictures":
-        with Console(stderr=True).status("study: pictures"):
-            walks = args.walks or _PICTURE_WALKS
-            return study.run(study.PicturesRun(args.seed, args.count, walks, args.device))
-    if args.study == "certificate":
-        with Console(stderr=True).status("study: certificate"):
-            walks = args.walks or _UNSEEN_WALKS
-            seconds = args.seconds or _CERTIFICATE_S
-            return study.run(study.CertificateRun(args.seed, args.count, seconds, walks, args.device))
-    if args.study == "converging":
-        return _run_converging(study, args)
-    if args.study == "acquire":
-        walks = args.walks or _ACQUIRE_WALKS
-        return _run_by_rows(study, args, study.AcquireRun(args.seed, args.count, walks, args.device), walks=walks)
-    if args.study == "veined":
-        walks = args.walks or _VEINED_WALKS
-        return _run_by_rows(study, args, study.VeinedRun(args.seed, args.count, walks, args.device), walks=walks)
-    if args.study == "volume":
-        return _run_by_rows(study, args, study.VolumeRun(args.seed, args.count, device=args.device))
+    if args.study in _BY_ROWS:
+        wanted, same = _wanted(study, args)
+        return _run_by_rows(study, args, wanted, same)
     if args.study == "unseen":
         from quadgraph_validation.accuracy import row_tasks
 
@@ -271,15 +254,31 @@ def _run_on_engine(study: ModuleType, args: argparse.Namespace) -> dict:
         return study.run(args.device, args.meshes, args.scene)
 
 
-def _run_converging(study: ModuleType, args: argparse.Namespace) -> dict:
-    walks, seconds = args.walks or _PICTURE_WALKS, args.seconds or _CONVERGING_S
-    asked = (walks, args.converge, seconds, args.device, args.for_material)
-    wanted = study.ConvergingRun(args.seed, args.count, *asked)
-    return _run_by_rows(study, args, wanted, walks=walks, converge=args.converge, for_material=args.for_material)
+def _wanted(study: ModuleType, args: argparse.Namespace) -> tuple[Any, tuple[str, ...]]:
+    """What is wanted of a study by rows, and which members of its record are the same where that is gone on with."""
+    first, device = (args.seed, args.count), args.device
+    if args.study == "acquire":
+        return study.AcquireRun(*first, args.walks or _ACQUIRE_WALKS, device), ("seed", "walks")
+    if args.study == "veined":
+        return study.VeinedRun(*first, args.walks or _VEINED_WALKS, device), ("seed", "walks")
+    if args.study == "pictures":
+        return study.PicturesRun(*first, args.walks or _PICTURE_WALKS, device), ("seed", "walks")
+    if args.study == "certificate":
+        seconds, walks = args.seconds or _CERTIFICATE_S, args.walks or _UNSEEN_WALKS
+        return study.CertificateRun(*first, seconds, walks, device), ("seed", "seconds", "walks")
+    if args.study == "converging":
+        walks, seconds = args.walks or _PICTURE_WALKS, args.seconds or _CONVERGING_S
+        wanted = study.ConvergingRun(*first, walks, args.converge, seconds, device, args.for_material)
+        return wanted, ("seed", "walks", "converge", "for_material")
+    if args.study == "volume":
+        return study.VolumeRun(*first, device=device), ("seed",)
+    if args.study == "light":
+        return study.LightRun(*first, device), ("seed",)
+    return study.DenseRun(device), ()
 
 
-def _run_by_rows(study: ModuleType, args: argparse.Namespace, wanted: Any, **same: Any) -> dict:
-    """Run a study whose record is written row by row. same: what a record has to have to be gone on with."""
+def _run_by_rows(study: ModuleType, args: argparse.Namespace, wanted: Any, same: tuple[str, ...]) -> dict:
+    """Run a study whose record is written row by row. same: members of a record that are those of what is wanted."""
     if args.resume and not args.json:
         raise InputError("--resume: found without --json, which names the record that is gone on with")
 
@@ -287,11 +286,13 @@ def _run_by_rows(study: ModuleType, args: argparse.Namespace, wanted: Any, **sam
         if args.json:
             _write(args, study.record_of(wanted, rows))
 
-    rows = kept_rows.read(args.json, args.study, seed=args.seed, **same) if args.resume else []
+    asked = {name: getattr(wanted, name) for name in same}
+    rows = kept_rows.read(args.json, args.study, **asked) if args.resume else []
     if args.scheduler:
-        from quadgraph_validation.accuracy import row_tasks
+        from quadgraph_validation.accuracy import dense_tasks, row_tasks
 
-        spread = row_tasks.named(STUDIES[args.study], wanted, args.scheduler)
+        by_study = {"dense": dense_tasks.named}.get(args.study, partial(row_tasks.named, STUDIES[args.study]))
+        spread = by_study(wanted, args.scheduler)
         return study.run(wanted, kept_rows.KeptRows(args.scene, rows, write, spread=spread))
     with Console(stderr=True).status(f"study: {args.study}") as status:
         kept = kept_rows.KeptRows(args.scene, rows, write, lambda name: status.update(f"study: {args.study}, {name}"))

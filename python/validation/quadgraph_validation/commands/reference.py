@@ -44,7 +44,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         metavar="FOLDER",
         help=f"where truths are kept (default: {COMMITTED_TRUTH} for transport, else ~/.cache/quadgraph)",
     )
-    add_scheduler_argument(parser, "images of transport and equations of pde")
+    add_scheduler_argument(parser, "images of transport, equations of pde and walks")
     _add_transport_options(parser.add_argument_group("transport"))
     _add_pde_options(parser.add_argument_group("pde"))
     parser.add_argument_group("walk").add_argument(
@@ -131,8 +131,6 @@ def _of_equations(args: argparse.Namespace, wanted: list[tuple[StudyScene, str, 
 
 
 def _walk(args: argparse.Namespace) -> Table:
-    if "scheduler" in args.given:
-        raise InputError("--scheduler: found with --kind walk, whose walks share one machine's cores by themselves")
     from quadgraph_validation.truth import cross_checks
 
     for name in args.scene:
@@ -142,12 +140,13 @@ def _walk(args: argparse.Namespace) -> Table:
     missing = cross_checks.why_no_pmmc()
     if missing:
         console.print(f"left out: {missing}", highlight=False)
-    rows = []
-    if "sphere" in chosen:
-        folder, pictures = args.truth or cache_folder(), args.truth or COMMITTED_TRUTH
-        rows += cross_checks.sphere(args.walks, folder, pictures, console, not missing)
-    if "slab" in chosen:
-        rows += cross_checks.slabs(args.walks, not missing)
+    folder, pictures = args.truth or cache_folder(), args.truth or COMMITTED_TRUTH
+    if args.scheduler:
+        from quadgraph_validation.truth import check_tasks
+
+        rows = check_tasks.rows(chosen, args.walks, folder, pictures, not missing, args.scheduler)
+    else:
+        rows = cross_checks.rows(chosen, args.walks, folder, pictures, not missing, console)
     table = Table("quantity", "our walks", "by others", "standard errors apart")
     for row in rows:
         others = (f"{name} {_with_error(*value)}" for name, value in row.others.items())

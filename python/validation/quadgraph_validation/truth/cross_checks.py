@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,7 +11,7 @@ from rich.console import Console
 
 from quadgraph.base.errors import InputError
 from quadgraph_validation.bodies import meshes, scene_meshes
-from quadgraph_validation.bodies.media import Medium, media
+from quadgraph_validation.bodies.media import media
 from quadgraph_validation.bodies.scenes import SCENES
 from quadgraph_validation.truth import monte_carlo, pmmc_walk, truth_run, walk_truth
 from quadgraph_validation.truth.monte_carlo import Estimate
@@ -41,36 +42,59 @@ class CheckRow:
         }
 
 
-def slabs(walks: int, pmmc: bool) -> list[CheckRow]:
-    """Reflected and transmitted by slabs in collimated light: beside discrete ordinates and, if asked for, pmmc."""
+def rows(
+    chosen: Sequence[str], walks: int, folder: Path, pictures: Path, pmmc: bool, console: Console
+) -> list[CheckRow]:
+    """Those of BODIES that are chosen. pmmc: whether to ask it; the rest as `sphere` takes it."""
+    found = []
+    if "sphere" in chosen:
+        found += sphere(walks, folder, pictures, console, sphere_by_pmmc(walks) if pmmc else None)
+    if "slab" in chosen:
+        found += [row for one in SLABS for row in slab(*one, walks, pmmc)]
+    return found
+
+
+def slab(name: str, channel: int, eta: float, walks: int, pmmc: bool) -> list[CheckRow]:
+    """Reflected and transmitted by one of SLABS in collimated light, beside discrete ordinates and, if asked for, pmmc.
+
+    Raises InputError as `pmmc_walk.load` does.
+    """
+    medium = media(name)[channel]
+    ours = monte_carlo.slab(medium, THICKNESS, eta, False, walks, _SEED)
+    exact = discrete_ordinates(medium, THICKNESS, eta, False)
+    theirs = pmmc_walk.slab(medium, THICKNESS, eta, walks, _SEED) if pmmc else None
     rows = []
-    for name, channel, eta in SLABS:
-        medium = media(name)[channel]
-        ours = monte_carlo.slab(medium, THICKNESS, eta, False, walks, _SEED)
-        exact = discrete_ordinates(medium, THICKNESS, eta, False)
-        theirs = pmmc_walk.slab(medium, THICKNESS, eta, walks, _SEED) if pmmc else None
-        for k, field in enumerate(("reflectance", "transmittance")):
-            others = {"discrete ordinates": (getattr(exact, field), 0.0)}
-            others |= {"pmmc": _at(theirs, k)} if theirs else {}
-            title = f"slab, {name} {'RGB'[channel]}, eta {eta:g}: {field}"
-            rows.append(CheckRow(title, _at(ours, k), others))
+    for k, field in enumerate(("reflectance", "transmittance")):
+        others = {"discrete ordinates": (float(getattr(exact, field)), 0.0)}
+        others |= {"pmmc": _at(theirs, k)} if theirs else {}
+        rows.append(CheckRow(f"{title_of(name, channel, eta)}: {field}", _at(ours, k), others))
     return rows
 
 
-def sphere(walks: int, folder: Path, pictures: Path, console: Console, pmmc: bool) -> list[CheckRow]:
+def title_of(name: str, channel: int, eta: float) -> str:
+    """One of SLABS in words."""
+    return f"slab, {name} {'RGB'[channel]}, eta {eta:g}"
+
+
+def sphere_by_pmmc(walks: int) -> Estimate:
+    """The exitance of the scene `sphere` by zones. Raises InputError as `pmmc_walk.load` does."""
+    scene = SCENES["sphere"]
+    radius, medium = walk_truth.radius_of(scene), walk_truth.medium_of(scene)
+    given = (scene.eta, walk_truth.ZONES, _BEAMS, walks, _SEED)
+    return pmmc_walk.sphere(meshes.ball(radius, _CUTS), medium, *given)
+
+
+def sphere(
+    walks: int, folder: Path, pictures: Path, console: Console, theirs: Estimate | None = None
+) -> list[CheckRow]:
     """The scene `sphere`: what leaves either half, beside pmmc, and what reaches the eyes, beside path tracing.
 
-    folder: of our walks, which are gone on with; pictures: of the path-traced ones. Raises InputError if either is
+    folder: of our walks, which are gone on with; pictures: of the path-traced ones; theirs: the exitance of its zones
+    by pmmc, if that was asked. Raises InputError if either is
     stale or a picture is not there.
     """
-    scene = SCENES["sphere"]
+    scene, zones = SCENES["sphere"], walk_truth.ZONES
     found = walk_truth.make(scene, walks, folder, console)
-    radius, zones = walk_truth.radius_of(scene), walk_truth.ZONES
-    theirs = None
-    if pmmc:
-        body = meshes.ball(radius, _CUTS)
-        medium: Medium = walk_truth.medium_of(scene)
-        theirs = pmmc_walk.sphere(body, medium, scene.eta, zones, _BEAMS, walks, _SEED)
     halves = {"dark half": slice(0, zones // 2), "lit half": slice(zones // 2, zones)}
     rows = [
         CheckRow(

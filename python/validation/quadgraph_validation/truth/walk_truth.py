@@ -5,6 +5,7 @@ Nothing is shared with path tracing but the physics: no mesh, no camera, another
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -97,7 +98,7 @@ def make(scene: StudyScene, walks: int, folder: Path, console: Console) -> WalkT
     scene: even and grey, lit along -z. Raises InputError if what is stored is stale.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    found, goal = stored(scene, folder), -(-walks // BATCH)
+    found, goal = stored(scene, folder), batches_of(walks)
     with Progress(console=console) as progress:
         bar = progress.add_task(f"{scene.name}, random walks", total=max(goal, found.batches), completed=found.batches)
         try:
@@ -109,6 +110,38 @@ def make(scene: StudyScene, walks: int, folder: Path, console: Console) -> WalkT
         finally:
             _save(folder, found)
     return found
+
+
+def batches_of(walks: int) -> int:
+    """How many batches so many walks are."""
+    return -(-walks // BATCH)
+
+
+def counts(scene: StudyScene, first: int, count: int) -> dict[str, Any]:
+    """So many batches from a first one on, without a key, ready for JSON."""
+    part = _none(scene, {}, first)
+    for _ in range(count):
+        part.add()
+    arrays = {"zones": part.zones.tolist(), "eyes": part.eyes.tolist()}
+    return {"first": first, "batches": part.batches, "absorbed": int(part.absorbed)} | arrays
+
+
+def extend(scene: StudyScene, folder: Path, parts: Sequence[Mapping[str, Any]]) -> None:
+    """Add what `counts` found of the batches that follow the stored ones to these.
+
+    Raises InputError if what is stored is stale, or others have walked on since.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    found = stored(scene, folder)
+    for part in parts:
+        if part["first"] != found.batches:
+            why = f"{found.batches} batches found, {part['first']} expected: others have walked on meanwhile"
+            raise InputError(f"{_path(scene, folder)}: {why}; the same command goes on from there")
+        found.zones += np.array(part["zones"])
+        found.eyes += np.array(part["eyes"])
+        found.absorbed += part["absorbed"]
+        found.batches = part["batches"]
+    _save(folder, found)
 
 
 def stored(scene: StudyScene, folder: Path) -> WalkTruth:
@@ -124,9 +157,14 @@ def stored(scene: StudyScene, folder: Path) -> WalkTruth:
         "walks": {"batch": BATCH, "seed": SEED, "zones": ZONES},
     }
     if not path.exists():
-        return WalkTruth(key, scene, 0, np.zeros(ZONES, np.int64), np.zeros(len(scene.views), np.int64), 0)
+        return _none(scene, key)
     arrays = store.load(path, key, _ARRAYS, "random walks")
     return WalkTruth(key, scene, int(arrays["batches"]), arrays["zones"], arrays["eyes"], int(arrays["absorbed"]))
+
+
+def _none(scene: StudyScene, key: dict[str, Any], batches: int = 0) -> WalkTruth:
+    """No walks. batches: that are left out."""
+    return WalkTruth(key, scene, batches, np.zeros(ZONES, np.int64), np.zeros(len(scene.views), np.int64), 0)
 
 
 def seen(image: StoredTruth) -> Estimate:
