@@ -14,4 +14,5 @@ def relative_rms(weight: np.ndarray, difference: np.ndarray, truth: np.ndarray) 
 
 
 def _squares(weight: np.ndarray, values: np.ndarray) -> float:
-    return float(weight @ (np.asarray(values, np.float64) ** 2).sum(axis=1))
+    # A product of vectors would be added up in parts, one for each thread that linear algebra has.
+    return float((weight * (np.asarray(values, np.float64) ** 2).sum(axis=1)).sum())

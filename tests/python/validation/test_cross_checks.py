@@ -157,13 +157,13 @@ def test_the_command_says_what_is_left_out(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(cross_checks, "SLABS", (("ketchup", 2, 1.0),))
 
     def absent():
-        raise InputError("pmmc is not there")
+        raise InputError("pmmc is not there; pip install 'validation[truth]'")
 
     monkeypatch.setattr(pmmc_walk, "load", absent)
     base = ["reference", "--kind", "walk", "--walks", "20000", "--truth", str(tmp_path)]
     assert cli.main([*base, "slab"]) == 0
     said = capsys.readouterr()
-    assert "left out: pmmc is not there" in said.err
+    assert "left out: pmmc is not there; pip install 'validation[truth]'" in said.err
     assert "ordinates" in said.out
     assert cli.main([*base, "bunny"]) == 1
     assert "scene 'bunny': allowed with --kind walk are sphere, slab" in capsys.readouterr().err

@@ -1,9 +1,14 @@
-"""Studies by rows, and cross-checks by walks, over workers: what one process makes, and nothing twice."""
+"""Studies by rows, bodies and numbers, and cross-checks, over workers: what one process makes, and nothing twice."""
 
 from __future__ import annotations
 
 import json
+import os
 import shutil
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,22 +18,30 @@ from quadgraph import cli
 from quadgraph.base.errors import InputError
 from quadgraph.work.schedulers import Scheduler
 from quadgraph_validation.accuracy import (
+    budget_study,
+    case_tasks,
     certificate_study,
     converging_study,
+    cutoff_study,
     dense_study,
     dense_tasks,
+    estimate_study,
+    forward_study,
     kept_rows,
     light_study,
     pictures_study,
     row_tasks,
+    scenes_study,
+    similarity_study,
+    target_study,
 )
-from quadgraph_validation.bodies.scenes import SCENES
+from quadgraph_validation.bodies.scenes import SCENES, StudyScene
 from quadgraph_validation.truth import check_tasks, cross_checks, walk_truth
 from quadgraph_validation.truth.monte_carlo import Estimate
 
 pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
 TWO, QUIET = Scheduler("processes", 2), Console(quiet=True)
-MODULES = {module.__name__: module for module in (row_tasks, dense_tasks, check_tasks)}
+MODULES = {module.__name__: module for module in (row_tasks, dense_tasks, case_tasks, check_tasks)}
 BY_SEED = {
     "certificate": (certificate_study, certificate_study.CertificateRun(401, 2, 1.5, 1000, "cpu")),
     "light": (light_study, light_study.LightRun(401, 2, "cpu")),
@@ -109,6 +122,106 @@ def test_the_command_spreads_bodies_and_finds_what_is_finished(tmp_path, monkeyp
         assert ("light 61: done (1 of 1)" in said) == (len(records) == 2)
         assert ("1 of 1 are finished already" in said) == (len(records) == 3)
     assert records[0] == records[1] == records[2]
+
+
+def test_errors_are_the_same_whatever_threads_linear_algebra_has():
+    """Those of a task have one."""
+    program = (
+        "import numpy as np; from quadgraph.base.relative_error import relative_rms; dice = np.random.default_rng(1);"
+        "print([relative_rms(*(dice.random(size) for size in (40_000, (40_000, 3), (40_000, 3)))) for _ in range(20)])"
+    )
+    said = {
+        subprocess.run(
+            [sys.executable, "-c", program],
+            env={**os.environ, "OPENBLAS_NUM_THREADS": str(threads)},
+            check=True,
+            capture_output=True,
+        ).stdout
+        for threads in (1, 2)
+    }
+    assert len(said) == 1
+
+
+@pytest.mark.parametrize("study", [estimate_study, target_study, budget_study])
+def test_bodies_are_tasks_by_their_names(study, here, tmp_path, monkeypatch):
+    names = [subject.name for subject in study.SUBJECTS[:2]]
+    for name, value in (
+        ("judged", lambda subjects, *of: [{"subject": one.name, "third": n / 3} for one in subjects for n in (1, 2)]),
+        ("original", lambda subject, *of: None),
+        ("judge", lambda mesh, height, case, *of: {"subject": case.subject, "third": case.error / 3}),
+        ("statistics", len),
+    ):
+        monkeypatch.setattr(study, name, value, raising=False)
+    (tmp_path / study.SUBJECTS[0].mesh).touch()  # is read, and the other one is not there
+    name = study.__name__.split(".")[-1].removesuffix("_study")
+    spread = case_tasks.of_bodies(name, "cpu", tmp_path, names, TWO)
+    assert here == [[f"{name} {one}" for one in names]]
+    assert spread == study.run("cpu", tmp_path, names)
+    assert {row["subject"] for row in spread["rows"]} == set(names)
+    with pytest.raises(InputError, match="scene 'nobody': allowed are "):
+        case_tasks.of_bodies(name, "cpu", tmp_path, ["nobody"], TWO)
+
+
+@pytest.mark.parametrize("study", [forward_study, similarity_study, cutoff_study])
+def test_cases_of_numbers_are_tasks(study, here, monkeypatch):
+
+    def rows_of(case, *of, **options):
+        return [dict(zip(("thickness", "albedo", "eta", "g"), (*case, g), strict=True)) for g in (0.1, 0.2)]
+
+    monkeypatch.setattr(study, "rows_of", rows_of)
+    monkeypatch.setattr(study, "_exact", lambda *of: {}, raising=False)
+    name = study.__name__.split(".")[-1].removesuffix("_study")
+    options = {"device": "cpu"} if study is forward_study else {}
+    spread = case_tasks.of_cases(name, TWO, **options)
+    assert spread == (study.run("cpu", Path(), ()) if options else study.run(None))
+    assert [row["thickness"] for row in spread["rows"]] == [case[0] for case in study.CASES for _ in range(2)]
+    assert len(here[0]) == len(set(here[0])) == len(study.CASES)
+
+
+def test_the_command_spreads_slabs_and_says_the_same_of_what_is_exact(tmp_path, monkeypatch, capfd):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    monkeypatch.setattr(cutoff_study, "CASES", ((3.0, 0.99, 1.4),))
+    records = []
+    for how in ([], ["--scheduler", "processes:1"]):
+        assert cli.main(["accuracy", "cutoff", "--json", str(tmp_path / "record.json"), *how]) == 0
+        records.append((tmp_path / "record.json").read_bytes())
+    assert records[0] == records[1]
+    assert "cutoff 3 0.99 1.4: done (1 of 1)" in capfd.readouterr().err
+
+
+@dataclass(frozen=True)
+class Subject:
+    """A scene with its mesh; of its pictures only where they are."""
+
+    scene: StudyScene
+    mesh: Path
+
+    def path(self, folder, image):
+        return folder / f"{self.scene.name}-{image}.npz"
+
+
+def test_scenes_are_tasks_that_draw_their_figures(here, tmp_path, monkeypatch):
+    figures = pytest.importorskip("quadgraph_validation.accuracy.scene_figures", reason="no matplotlib")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    (tmp_path / "mesh.ply").touch()
+    monkeypatch.setattr(
+        scenes_study,
+        "subjects",
+        lambda meshes, names: [Subject(SCENES[name], tmp_path / "mesh.ply") for name in names],
+    )
+    monkeypatch.setattr(scenes_study, "stored", lambda found, truths: dict.fromkeys(found.scene.images))
+    monkeypatch.setattr(scenes_study, "compare", lambda found, pictures, device: dict.fromkeys(pictures, found.scene))
+    monkeypatch.setattr(scenes_study, "measured", lambda compared: {"height": compared.height})
+    monkeypatch.setattr(figures, "write", lambda path, *of: path.write_text("drawn"))
+    for name in ("spot", "skin"):
+        for image in SCENES[name].images:
+            (tmp_path / f"{name}-{image}.npz").touch()
+    given = ("cpu", tmp_path, tmp_path, ["spot", "skin"])
+    spread = case_tasks.of_scenes(*given, tmp_path, TWO)
+    assert here == [["scenes spot", "scenes skin"]]
+    assert sorted(path.name for path in tmp_path.glob("*.png")) == ["scenes-skin.png", "scenes-spot.png"]
+    assert spread == scenes_study.run(*given)
+    assert spread == case_tasks.of_scenes(*given, None, TWO)
 
 
 WALKS = 11 * walk_truth.BATCH  # a task of ten batches, and one more

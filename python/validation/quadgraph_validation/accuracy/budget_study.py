@@ -97,6 +97,11 @@ def run(
                 rows.append(judge(mesh, subject.height, case, Path(folder), device))
                 if tell:
                     tell(rows[-1])
+    return record_of(rows)
+
+
+def record_of(rows: list[dict[str, Any]]) -> dict[str, Any]:
+    """The record of a run with these rows."""
     return {"rows": rows}
 
 

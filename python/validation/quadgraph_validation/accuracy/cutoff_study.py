@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ MOST = 15  # scatterings of a path: the default of `omni:rtx:rtpt:maxVolumeBounc
 THICKNESSES = (3.0, 7.0, 14.0, np.inf)  # mean free paths, which are 1 mm here; inf: a half-space
 ALBEDOS = (0.9, 0.99, 0.999, 0.9992)
 ETAS = (1.0, 1.4)
+CASES = tuple(itertools.product(THICKNESSES, ALBEDOS, ETAS))
 WALKS = 400_000
 SEED = 1
 _FEWEST = 100  # walks that tell a share
@@ -23,18 +25,24 @@ _FEWEST = 100  # walks that tell a share
 
 def run(_body_of: BodyOf, walks: int = WALKS) -> dict[str, Any]:
     """Every albedo, thickness and index under light at normal incidence."""
-    rows = [_row(thickness, albedo, eta, walks) for thickness in THICKNESSES for albedo in ALBEDOS for eta in ETAS]
-    return {"walks": walks, "seed": SEED, "most": MOST, "rows": rows}
+    return record_of([row for case in CASES for row in rows_of(case, walks)], walks)
 
 
-def _row(thickness: float, albedo: float, eta: float, walks: int) -> dict[str, Any]:
-    medium = Medium(albedo, 1 - albedo)
-    found = monte_carlo.after_many(medium, thickness, eta, MOST, walks, SEED)
+def record_of(rows: list[dict[str, Any]], walks: int = WALKS) -> dict[str, Any]:
+    """The record of a run with these rows, with what is known without walks beside them."""
+    told = [row | {"exact": _exact(row["thickness"], row["albedo"], row["eta"])} for row in rows]
+    return {"walks": walks, "seed": SEED, "most": MOST, "rows": told}
+
+
+def rows_of(case: tuple[float, float, float], walks: int = WALKS) -> list[dict[str, Any]]:
+    """What was walked of a thickness, an albedo and an index."""
+    thickness, albedo, eta = case
+    found = monte_carlo.after_many(Medium(albedo, 1 - albedo), thickness, eta, MOST, walks, SEED)
     row: dict[str, Any] = {"thickness": None if np.isinf(thickness) else thickness, "albedo": albedo, "eta": eta}
     sides = ("reflectance", "transmittance")
     for side, share, late, error in zip(sides, found.mean[:2], found.mean[2:], found.error[:2], strict=True):
         row[side] = {"walked": float(share), "standard_error": float(error)} | _lost(share, late, walks)
-    return row | {"exact": _exact(medium, thickness, eta)}
+    return [row]
 
 
 def _lost(share: float, late: float, walks: int) -> dict[str, float]:
@@ -45,9 +53,10 @@ def _lost(share: float, late: float, walks: int) -> dict[str, float]:
     return {"lost": float(lost), "lost_error": float(np.sqrt(lost * (1 - lost) / (share * walks)))}
 
 
-def _exact(medium: Medium, thickness: float, eta: float) -> dict[str, float]:
+def _exact(thickness: float | None, albedo: float, eta: float) -> dict[str, float]:
     """Without walks: of a slab by discrete ordinates, of an index-matched half-space by its H function."""
-    if np.isfinite(thickness):
+    medium = Medium(albedo, 1 - albedo)
+    if thickness is not None:
         light = discrete_ordinates(medium, thickness, eta, lambertian=False)
         return {"reflectance": light.reflectance, "transmittance": light.transmittance}
     if eta != 1:

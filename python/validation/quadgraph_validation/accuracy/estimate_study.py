@@ -123,6 +123,11 @@ def run(device: str, meshes: Path, names: list[str]) -> dict[str, Any]:
     Raises InputError for an unknown name or a mesh that cannot be read.
     """
     rows = judged(level_chains.chosen(SUBJECTS, names), CASES, meshes, lambda path: Judged(path, device, *FINER), judge)
+    return record_of(rows)
+
+
+def record_of(rows: list[dict[str, Any]]) -> dict[str, Any]:
+    """The record of a run with these rows."""
     return {"rows": rows, "statistics": statistics(rows)}
 
 

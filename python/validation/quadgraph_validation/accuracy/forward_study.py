@@ -20,6 +20,7 @@ from quadgraph_validation.truth import monte_carlo
 
 LIGHT = "directional:0,0,-1:1"
 DETAIL, SHAKE_SEED = 4, 5
+CASES = similarity_study.CASES
 FORWARD = (-0.5, 0.5, 0.8, 0.9)  # g
 WALKS = 400_000
 SEED = 11
@@ -28,13 +29,21 @@ ZONES = similarity_study.ZONES
 
 def run(device: str, _meshes: Path, _names: Sequence[str], walks: int = WALKS) -> dict[str, Any]:
     """Every ball of the study similarity, by the default bake and solve."""
-    with tempfile.TemporaryDirectory(prefix="quadgraph-forward-") as folder:
-        rows = [row for case in similarity_study.CASES for row in _rows(*case, Path(folder), device, walks)]
+    return record_of([row for case in CASES for row in rows_of(case, device, walks)], walks)
+
+
+def record_of(rows: list[dict[str, Any]], walks: int = WALKS) -> dict[str, Any]:
+    """The record of a run with these rows."""
     return {"walks": walks, "seed": SEED, "zones": ZONES, "light": LIGHT, "rows": rows}
 
 
+def rows_of(case: tuple[float, float, float], device: str, walks: int = WALKS) -> list[dict[str, Any]]:
+    """Of a ball, one for each g."""
+    with tempfile.TemporaryDirectory(prefix="quadgraph-forward-") as folder:
+        return _rows(*case, Path(folder), device, walks)
+
+
 def _rows(radius: float, albedo: float, eta: float, folder: Path, device: str, walks: int) -> list[dict[str, Any]]:
-    """One for each g."""
     mesh, body = folder / f"{radius:g}-{albedo:g}.ply", folder / f"{radius:g}-{albedo:g}.qgraph"
     unseen_bodies.write(mesh, dense_study.surface_of(radius, DETAIL, SHAKE_SEED))
     bake(mesh, body, BakeOptions(unit="mm"))

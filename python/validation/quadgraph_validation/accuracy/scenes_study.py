@@ -76,17 +76,35 @@ def run(
     meshes: folder of the mesh files; truths: folder of the path-traced pictures; images: folder for figures, none
     without it. Raises InputError.
     """
-    subjects = [truth_run.subject(scene, scene_meshes.file(scene, meshes)) for scene in scenes.chosen(names)]
     record = {}
-    for found in subjects:
-        stored = {image: _stored(found, truths, image) for image in found.scene.images}
+    for found in subjects(meshes, names):
         with Console(stderr=True).status(f"scene: {found.scene.name}"):
-            compared = compare(found, stored, device)
+            compared = compare(found, stored(found, truths), device)
         record[found.scene.name] = {image: measured(one) for image, one in compared.items()}
         if images:
             from quadgraph_validation.accuracy import scene_figures
 
-            scene_figures.write(images / f"scenes-{found.scene.name}.png", found.scene, compared, SHOWN)
+            scene_figures.write(figure_of(found.scene.name, images), found.scene, compared, SHOWN)
+    return record_of(record)
+
+
+def subjects(meshes: Path, names: list[str]) -> list[TracedSubject]:
+    """The scenes of the given names, all if there are none. Raises InputError."""
+    return [truth_run.subject(scene, scene_meshes.file(scene, meshes)) for scene in scenes.chosen(names)]
+
+
+def stored(found: TracedSubject, truths: Path) -> dict[str, StoredTruth]:
+    """A scene's path-traced pictures, by image. Raises InputError for one that is not there or stale."""
+    return {image: _stored(found, truths, image) for image in found.scene.images}
+
+
+def figure_of(name: str, images: Path) -> Path:
+    """Where the figure of a scene goes."""
+    return images / f"scenes-{name}.png"
+
+
+def record_of(record: dict[str, Any]) -> dict[str, Any]:
+    """The record of a run with what was found, by scene and image."""
     return {"block": blocks.BLOCK, "bright": blocks.BRIGHT, "scenes": record}
 
 

@@ -44,29 +44,36 @@ def run(_body_of: BodyOf, walks: int = WALKS) -> dict[str, Any]:
     """Every case with every g against the reduced medium, and one half-way to it with the same second moment [Joseph
     1976], each by other random numbers.
     """
-    rows = []
-    for radius, albedo, eta in CASES:
-        reduced, noise = exitance(Medium(albedo, 1 - albedo), radius, eta, 0.0, walks, SEED)
-        for g in FORWARD:
-            full = Medium(albedo / (1 - g), 1 - albedo)
-            truth, error = exitance(full, radius, eta, g, walks, SEED + 1)
-            less = g / (1 + g)
-            delta, delta_noise = exitance(Medium(albedo / (1 - less), 1 - albedo), radius, eta, less, walks, SEED + 2)
-            rows.append(
-                {
-                    "radius": radius,
-                    "albedo": albedo,
-                    "eta": eta,
-                    "g": g,
-                    "power": float(reduced.sum() / truth.sum() - 1),
-                    "delta": apart(delta, truth, delta_noise, error),
-                    **{
-                        name: apart(reduced[part], truth[part], noise[part], error[part])
-                        for name, part in PARTS.items()
-                    },
-                }
-            )
+    return record_of([row for case in CASES for row in rows_of(case, walks)], walks)
+
+
+def record_of(rows: list[dict[str, Any]], walks: int = WALKS) -> dict[str, Any]:
+    """The record of a run with these rows."""
     return {"walks": walks, "seed": SEED, "zones": ZONES, "rows": rows}
+
+
+def rows_of(case: tuple[float, float, float], walks: int = WALKS) -> list[dict[str, Any]]:
+    """Of a ball, one for each g."""
+    radius, albedo, eta = case
+    rows = []
+    reduced, noise = exitance(Medium(albedo, 1 - albedo), radius, eta, 0.0, walks, SEED)
+    for g in FORWARD:
+        full = Medium(albedo / (1 - g), 1 - albedo)
+        truth, error = exitance(full, radius, eta, g, walks, SEED + 1)
+        less = g / (1 + g)
+        delta, delta_noise = exitance(Medium(albedo / (1 - less), 1 - albedo), radius, eta, less, walks, SEED + 2)
+        rows.append(
+            {
+                "radius": radius,
+                "albedo": albedo,
+                "eta": eta,
+                "g": g,
+                "power": float(reduced.sum() / truth.sum() - 1),
+                "delta": apart(delta, truth, delta_noise, error),
+                **{name: apart(reduced[part], truth[part], noise[part], error[part]) for name, part in PARTS.items()},
+            }
+        )
+    return rows
 
 
 def apart(found: np.ndarray, truth: np.ndarray, *noises: np.ndarray) -> dict[str, float]:

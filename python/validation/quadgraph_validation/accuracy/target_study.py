@@ -85,7 +85,12 @@ def run(device: str, meshes: Path, names: list[str]) -> dict[str, Any]:
     Raises InputError for an unknown name or a mesh that cannot be read.
     """
     subjects = level_chains.chosen(SUBJECTS, names)
-    return {"rows": judged(subjects, CASES, meshes, lambda path: Pair.of(path, device), judge)}
+    return record_of(judged(subjects, CASES, meshes, lambda path: Pair.of(path, device), judge))
+
+
+def record_of(rows: list[dict[str, Any]]) -> dict[str, Any]:
+    """The record of a run with these rows."""
+    return {"rows": rows}
 
 
 def tables(record: dict[str, Any]) -> list[Table]:

@@ -73,7 +73,9 @@ ON_ENGINE = {
 
 # Studies whose cases have names.
 _BY_ROWS = ("acquire", "certificate", "converging", "dense", "light", "pictures", "veined", "volume")
-_BY_CASES = ("unseen", *_BY_ROWS)  # whose cases are independent
+_BY_BODIES = ("estimate", "target", "budget")  # whose bodies have names
+_BY_NUMBERS = ("forward", "similarity", "cutoff")  # whose cases are numbers
+_BY_CASES = ("unseen", "scenes", *_BY_ROWS, *_BY_BODIES, *_BY_NUMBERS)  # whose cases are independent
 
 _UNSEEN_WALKS, _ACQUIRE_WALKS, _VEINED_WALKS, _PICTURE_WALKS = 2_000_000, 8192, 20_000, 2000
 _CERTIFICATE_S, _CONVERGING_S = 15.0, 120.0
@@ -96,7 +98,8 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "--device", default="", metavar="NAME", help="cpu, or part of a Vulkan device's name; default: a GPU, else cpu"
     )
     add_scheduler_argument(parser, f"the cases of {', '.join(_BY_CASES)}")
-    _add_bodies_options(parser.add_argument_group("scenes, estimate, target, budget, acquire, volume, veined"))
+    of_names = f"scenes, {', '.join(_BY_BODIES)}; {', '.join(_BY_ROWS)} take --scene"
+    _add_bodies_options(parser.add_argument_group(of_names))
     _add_scenes_options(parser.add_argument_group("scenes, unseen"))
     _add_unseen_options(
         parser.add_argument_group(
@@ -203,6 +206,10 @@ def run(args: argparse.Namespace) -> int:
         if args.reference:
             raise InputError(f"{args.study}: --reference found, but only the engine {ON_ENGINE[args.study]}")
         record = _run_on_engine(study, args)
+    elif args.scheduler:
+        from quadgraph_validation.accuracy import case_tasks
+
+        record = case_tasks.of_cases(args.study, args.scheduler)
     else:
         body_of = schemes.on_reference if args.reference else schemes.on_engine(args.device)
         with Console(stderr=True).status(f"study: {args.study}"):
@@ -222,7 +229,7 @@ def _write(args: argparse.Namespace, record: dict) -> None:
 
 def _run_on_engine(study: ModuleType, args: argparse.Namespace) -> dict:
     if args.study == "scenes":
-        return study.run(args.device, args.meshes, args.truth or COMMITTED_TRUTH, args.scene, args.images)
+        return _run_scenes(study, args)
     if args.study in _BY_ROWS:
         wanted, same = _wanted(study, args)
         return _run_by_rows(study, args, wanted, same)
@@ -250,8 +257,23 @@ def _run_on_engine(study: ModuleType, args: argparse.Namespace) -> dict:
 
             unseen_figures.write(args.images / "unseen.png", record)
         return record
+    if args.scheduler:
+        from quadgraph_validation.accuracy import case_tasks
+
+        if args.study in _BY_NUMBERS:
+            return case_tasks.of_cases(args.study, args.scheduler, device=args.device)
+        return case_tasks.of_bodies(args.study, args.device, args.meshes, args.scene, args.scheduler)
     with Console(stderr=True).status(f"study: {args.study}"):
         return study.run(args.device, args.meshes, args.scene)
+
+
+def _run_scenes(study: ModuleType, args: argparse.Namespace) -> dict:
+    asked = (args.device, args.meshes, args.truth or COMMITTED_TRUTH, args.scene, args.images)
+    if args.scheduler:
+        from quadgraph_validation.accuracy import case_tasks
+
+        return case_tasks.of_scenes(*asked, args.scheduler)
+    return study.run(*asked)
 
 
 def _wanted(study: ModuleType, args: argparse.Namespace) -> tuple[Any, tuple[str, ...]]:

@@ -139,7 +139,7 @@ def _walk(args: argparse.Namespace) -> Table:
     chosen, console = args.scene or cross_checks.BODIES, Console(stderr=True)
     missing = cross_checks.why_no_pmmc()
     if missing:
-        console.print(f"left out: {missing}", highlight=False)
+        console.print(f"left out: {missing}", highlight=False, markup=False, soft_wrap=True)
     folder, pictures = args.truth or cache_folder(), args.truth or COMMITTED_TRUTH
     if args.scheduler:
         from quadgraph_validation.truth import check_tasks

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -30,16 +29,19 @@ def rows(
     """
     folder = folder.absolute()
     ours = _our_walks(walks, folder) if "sphere" in chosen else []
-    theirs = [Task("walks sphere, pmmc", f"{__name__}:by_pmmc", {"walks": walks})]
-    theirs = theirs if pmmc and "sphere" in chosen else []
+    asked = pmmc and "sphere" in chosen
+    theirs = [Task("walks sphere, pmmc", f"{__name__}:by_pmmc", {"walks": walks})] if asked else []
     slabs = _slabs(walks, pmmc) if "slab" in chosen else []
     values = iter(run_tasks([*ours, *theirs, *slabs], scheduler, folder / LEDGER))
     found = []
     if "sphere" in chosen:
         walk_truth.extend(SCENES["sphere"], folder, [next(values) for _ in ours])
-        exitance = [Estimate(*map(np.array, next(values))) for _ in theirs]
+        exitance = [_estimate(*next(values)) for _ in theirs]
         found += cross_checks.sphere(walks, folder, pictures, Console(quiet=True), *exitance)
-    return found + [row for value in values for row in map(_row, value)]
+    for task, value in zip(slabs, values, strict=True):
+        given = [task.arguments[name] for name in ("name", "channel", "eta")]
+        found += cross_checks.slab(*given, *(_estimate(*each) for each in value))
+    return found
 
 
 def _our_walks(walks: int, folder: Path) -> list[Task]:
@@ -59,7 +61,7 @@ def _slabs(walks: int, pmmc: bool) -> list[Task]:
     for name, channel, eta in cross_checks.SLABS:
         given = {"name": name, "channel": channel, "eta": eta, "walks": walks, "pmmc": pmmc}
         title = cross_checks.title_of(name, channel, eta)
-        tasks.append(Task(f"walks {title}", f"{__name__}:slab_rows", given))
+        tasks.append(Task(f"walks {title}", f"{__name__}:slab_walks", given))
     return tasks
 
 
@@ -70,15 +72,17 @@ def walked(first: int, count: int) -> dict[str, Any]:
 
 def by_pmmc(walks: int) -> list[list[float]]:
     """pmmc's exitance of the sphere's zones, and its standard errors."""
-    found = cross_checks.sphere_by_pmmc(walks)
+    return _members(cross_checks.sphere_by_pmmc(walks))
+
+
+def slab_walks(name: str, channel: int, eta: float, walks: int, pmmc: bool) -> list[list[list[float]]]:
+    """What our walks find of a slab and, if asked for, pmmc's."""
+    return [_members(found) for found in cross_checks.slab_walks(name, channel, eta, walks, pmmc)]
+
+
+def _members(found: Estimate) -> list[list[float]]:
     return [found.mean.tolist(), found.error.tolist()]
 
 
-def slab_rows(name: str, channel: int, eta: float, walks: int, pmmc: bool) -> list[dict[str, Any]]:
-    """The rows of a slab."""
-    return [asdict(row) for row in cross_checks.slab(name, channel, eta, walks, pmmc)]
-
-
-def _row(members: dict[str, Any]) -> CheckRow:
-    others = {name: tuple(value) for name, value in members["others"].items()}
-    return CheckRow(members["quantity"], tuple(members["ours"]), others)
+def _estimate(mean: list[float], error: list[float]) -> Estimate:
+    return Estimate(np.array(mean), np.array(error))

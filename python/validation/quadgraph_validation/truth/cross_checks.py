@@ -50,22 +50,26 @@ def rows(
     if "sphere" in chosen:
         found += sphere(walks, folder, pictures, console, sphere_by_pmmc(walks) if pmmc else None)
     if "slab" in chosen:
-        found += [row for one in SLABS for row in slab(*one, walks, pmmc)]
+        found += [row for one in SLABS for row in slab(*one, *slab_walks(*one, walks, pmmc))]
     return found
 
 
-def slab(name: str, channel: int, eta: float, walks: int, pmmc: bool) -> list[CheckRow]:
-    """Reflected and transmitted by one of SLABS in collimated light, beside discrete ordinates and, if asked for, pmmc.
+def slab_walks(name: str, channel: int, eta: float, walks: int, pmmc: bool) -> list[Estimate]:
+    """Reflected and transmitted by one of SLABS in collimated light: by our walks and, if asked for, pmmc's.
 
     Raises InputError as `pmmc_walk.load` does.
     """
     medium = media(name)[channel]
     ours = monte_carlo.slab(medium, THICKNESS, eta, False, walks, _SEED)
-    exact = discrete_ordinates(medium, THICKNESS, eta, False)
-    theirs = pmmc_walk.slab(medium, THICKNESS, eta, walks, _SEED) if pmmc else None
+    return [ours, *([pmmc_walk.slab(medium, THICKNESS, eta, walks, _SEED)] if pmmc else [])]
+
+
+def slab(name: str, channel: int, eta: float, ours: Estimate, theirs: Estimate | None = None) -> list[CheckRow]:
+    """What `slab_walks` found, beside discrete ordinates."""
+    exact = discrete_ordinates(media(name)[channel], THICKNESS, eta, False)
     rows = []
     for k, field in enumerate(("reflectance", "transmittance")):
-        others = {"discrete ordinates": (float(getattr(exact, field)), 0.0)}
+        others = {"discrete ordinates": (getattr(exact, field), 0.0)}
         others |= {"pmmc": _at(theirs, k)} if theirs else {}
         rows.append(CheckRow(f"{title_of(name, channel, eta)}: {field}", _at(ours, k), others))
     return rows
