@@ -138,8 +138,7 @@ class Limits:
         interior = self.interior
 
         def expected(factor: float) -> float:
-            limits = _REGULAR * interior.eased(factor).edges(*places) ** 3
-            return float(len(volumes) + _PIECES * (volumes / limits)[volumes > limits].sum())
+            return expected_tets(volumes, _REGULAR * interior.eased(factor).edges(*places) ** 3)
 
         if interior.most is not None:
             self.interior = interior.eased(_least(expected, interior.most * len(volumes)))
@@ -148,6 +147,11 @@ class Limits:
                 f"interior: edges of {interior.edge:.3g} mm would make about {count:.1e} tets, at most "
                 f"{MOST_TETS:.0e} allowed; a larger size, or auto"
             )
+
+
+def expected_tets(volumes: np.ndarray, limits: np.ndarray) -> float:
+    """How many tets become of tets of these volumes (n,) that may have so much, (n,), mm^3."""
+    return float(len(volumes) + _PIECES * (volumes / limits)[volumes > limits].sum())
 
 
 def _least(expected: Callable[[float], float], most: float) -> float:

@@ -19,11 +19,14 @@ from quadgraph.base.errors import ToolError
 from quadgraph.mesh.intersections import TETGEN
 from quadgraph.mesh.surface import MesherInfo, Surface, joined_surface
 from quadgraph.mesh.tet_files import read_tets, write_smesh, write_volumes
+from quadgraph.tets.interior import expected_tets
+from quadgraph.tets.tet_geometry import determinants
 
 OPTIONS = "-pYq1.4/0"  # piecewise linear complex, surface kept, radius-edge ratio 1.4, no dihedral bound
 REFINE = "-rYq1.4/0a"  # the same on tets that are there, with the volumes of a .vol file
 REFINE_LOOSELY = "-rYq2/0a"  # where that has no end, as between flat parts of a surface that stays
-_LEAST_REFINING_S, _MOST_REFINING = 10, 30  # s, and times what filling took: where it goes on for longer it has no end
+# Refining takes about half of what filling took for as many tets: where it goes on for much longer it has no end.
+_LEAST_REFINING_S, _MOST_REFINING = 10, 6
 _PASSES = 3  # a limit holds for what becomes of a tet, so that large ones are asked for again
 
 
@@ -54,14 +57,16 @@ def fill(
         vertices, tets = made(
             directory, [OPTIONS + ("" if limits else "F"), "surface.smesh"], "surface.1", time_limit_s
         )
-        refining = max(_LEAST_REFINING_S, _MOST_REFINING * (time.perf_counter() - start))
+        filling, filled = time.perf_counter() - start, max(len(tets), 1)
         switches = REFINE
         for number in range(1, 1 + _PASSES):
             volumes = limits(vertices, tets) if limits and len(tets) else None
             if volumes is None:
                 break
             write_volumes(volumes, directory / f"surface.{number}.vol")
-            refine = partial(made, directory, stem=f"surface.{number + 1}", seconds=min(time_limit_s, refining))
+            expected = expected_tets(np.abs(determinants(vertices, tets)) / 6, volumes)
+            seconds = min(time_limit_s, refining_s(filling, filled, expected))
+            refine = partial(made, directory, stem=f"surface.{number + 1}", seconds=seconds)
             try:
                 vertices, tets = refine([switches, f"surface.{number}"])
             except ToolError:
@@ -79,6 +84,11 @@ def fill(
             "ones, or try --mesher cgal"
         )
     return vertices, tets, MesherInfo("tetgen", _version(TETGEN.path()), options)
+
+
+def refining_s(filling_s: float, filled: int, expected: float) -> float:
+    """Seconds after which refining to so many tets as are expected has no end, where filling made `filled`."""
+    return max(_LEAST_REFINING_S, _MOST_REFINING * filling_s * expected / filled)
 
 
 @cache

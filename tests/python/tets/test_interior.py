@@ -254,6 +254,25 @@ def test_a_coarser_level_that_cannot_be_refined_does_not_end_the_chain() -> None
     assert "level 1: tets inside are as the surface makes them" in notes[0]
 
 
+def test_refining_may_take_as_much_longer_as_it_makes_more_tets(monkeypatch) -> None:
+    foreseen = []
+
+    def noted(filling_s: float, filled: int, expected: float) -> float:
+        foreseen.append((filled, expected))
+        return refining_s(filling_s, filled, expected)
+
+    refining_s = tetgen.refining_s
+    monkeypatch.setattr(tetgen, "refining_s", noted)
+    first = len(tetrahedralise(BALL).tets)
+    for edge in (1.6, 0.8):
+        foreseen.clear()
+        made = len(filled(BALL, edge).tets)
+        assert foreseen[0][0] == first
+        assert 0.6 < foreseen[0][1] / made < 1.7
+    assert refining_s(2.0, 1000, 500_000) == 100 * refining_s(2.0, 1000, 5_000)
+    assert refining_s(0.01, 1000, 2000) == refining_s(0.02, 1000, 1000)  # a least time, for machines with other work
+
+
 def test_tets_are_refined_less_well_where_that_has_no_end_otherwise(monkeypatch) -> None:
     monkeypatch.setattr(tetgen, "REFINE", "-rYq.3/0a")
     monkeypatch.setattr(tetgen, "_LEAST_REFINING_S", 2)
