@@ -2,9 +2,7 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
-#include <cmath>
 #include <glm/geometric.hpp>
-#include <glm/trigonometric.hpp>
 #include <optional>
 #include <utility>
 
@@ -16,29 +14,9 @@
 namespace quadgraph {
 namespace {
 
-constexpr int ring_points = 48;
 constexpr float still = 4;  // pixels of an ordinary display, that a click may go
 constexpr std::chrono::milliseconds outline_time{1500};
 constexpr float degrees_per_height = 180.0f;  // of a drag over the height of the picture
-
-// In clip coordinates.
-std::vector<glm::vec2> ring_around(const Picked& middle, float radius, const Camera& camera) {
-  const glm::vec3 side = std::abs(middle.normal.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
-  const glm::vec3 u = glm::normalize(glm::cross(middle.normal, side)), v = glm::cross(middle.normal, u);
-  std::vector<glm::vec2> ring;
-  for (int i = 0; i < ring_points; ++i) {
-    const float angle = glm::radians(360.0f * static_cast<float>(i) / ring_points);
-    const glm::vec4 clip = camera.clip(middle.position + radius * (std::cos(angle) * u + std::sin(angle) * v));
-    ring.emplace_back(clip.x / clip.w, clip.y / clip.w);
-  }
-  return ring;
-}
-
-// Whether a place of the surface looks towards the eye.
-bool faces(const Picked& place, const Camera& camera) {
-  const glm::vec3 to_eye = camera.parallel ? glm::vec3(camera.backward) : glm::vec3(camera.eye) - place.position;
-  return glm::dot(place.normal, to_eye) > 0;
-}
 
 }  // namespace
 
@@ -181,36 +159,15 @@ Camera Viewer::seen_from() const {
   return place_camera(state_.scene.view, context.bounds, context.aspect);
 }
 
-// The brush's edge on the body around the pointer, and around the place on the other side where it paints both and that
-// place looks towards the eye; clip coordinates.
-std::vector<std::vector<glm::vec2>> Viewer::brush_rings() const {
+// The brush's edges on the body around the pointer.
+std::vector<Ring> Viewer::brush_rings() const {
   if (!state_.brush.on || interface_.has_pointer()) return {};
-  const Camera camera = seen_from();
-  const auto found = picker_.pick(camera, pointer());
-  if (!found) return {};
-  std::vector<std::vector<glm::vec2>> rings;
-  rings.push_back(ring_around(*found, state_.brush.edit.radius, camera));
-  const auto other = other_side(*found);
-  if (other && faces(*other, camera)) rings.push_back(ring_around(*other, state_.brush.edit.radius, camera));
-  return rings;
-}
-
-// The place on the other side of the body, where the brush paints both.
-std::optional<Picked> Viewer::other_side(const Picked& found) const {
-  if (state_.brush.mirror == Mirror::off) return std::nullopt;
-  return picker_.nearest_to(mirrored(found.at_rest, state_.brush.mirror, picker_.middle()));
+  return picker_.rings(seen_from(), pointer(), state_.brush);
 }
 
 // Where the pointer meets the body.
 std::optional<Touch> Viewer::pointed_at() const {
-  const Camera camera = seen_from();
-  const auto found = picker_.pick(camera, pointer());
-  if (!found) return std::nullopt;
-  Touch touch{touched(*found, camera)};
-  if (!state_.bodies.empty()) touch.body = state_.bodies[picker_.body_of(*found)];
-  const auto other = other_side(*found);
-  if (other) touch.mirrored = mirrored(touch.here, state_.brush.mirror, *other);
-  return touch;
+  return picker_.touch(seen_from(), pointer(), state_.brush.mirror);
 }
 
 }  // namespace quadgraph

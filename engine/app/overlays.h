@@ -1,8 +1,8 @@
 // What lies over the picture: the keys, what the colours mean, and the last message.
 #pragma once
 
-#include "engine/app/outline.h"
 #include "engine/app/state.h"
+#include "engine/render/display/outline.h"
 #include "engine/render/picture/legend.h"
 
 namespace quadgraph {

@@ -9,12 +9,12 @@
 #include "engine/app/history.h"
 #include "engine/app/interface.h"
 #include "engine/app/pace.h"
-#include "engine/app/picker.h"
 #include "engine/app/preview.h"
 #include "engine/app/state.h"
 #include "engine/app/window.h"
 #include "engine/render/converging.h"
 #include "engine/render/picture/tone_mapper.h"
+#include "engine/scene/picker.h"
 #include "engine/scene/stage.h"
 #include "engine/vk/swapchain.h"
 
@@ -77,8 +77,7 @@ class Viewer {
   glm::vec2 pointer() const;
   std::optional<Touch> pointed_at() const;
   Camera seen_from() const;
-  std::vector<std::vector<glm::vec2>> brush_rings() const;
-  std::optional<Picked> other_side(const Picked& found) const;
+  std::vector<Ring> brush_rings() const;
   bool touch_down(const Touch& touch);
   void listen();
   std::vector<Event> take_events();

@@ -3,7 +3,9 @@
 
 #include <array>
 #include <string>
+#include <string_view>
 
+#include "engine/base/names.h"
 #include "engine/render/display/pick.h"
 
 namespace quadgraph {
@@ -19,6 +21,15 @@ inline constexpr float least_sine = 0.1f;  // of the angle between a surface's n
 
 // By which axis of the body its sides are told apart.
 enum class Mirror { off, x, y, z };
+
+template <>
+struct Names<Mirror> {
+  static constexpr std::string_view what = "mirror";
+  static constexpr auto values = std::to_array<Named<Mirror>>({{Mirror::off, "off", "the side of the pointer alone"},
+                                                               {Mirror::x, "x", "across x, too"},
+                                                               {Mirror::y, "y", "across y, too"},
+                                                               {Mirror::z, "z", "across z, too"}});
+};
 
 // What a user calls them, with the axis, in the order of Mirror. `front`: the body's, degrees.
 std::array<std::string, 4> mirror_names(float front, UpAxis up);

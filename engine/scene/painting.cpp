@@ -13,7 +13,7 @@ float length(const JsonField& field) {
 }
 
 Brush brush_from(const JsonField& field) {
-  field.allow({"tool", "colour", "distance", "strength", "radius", "depth", "falloff", "layer"});
+  field.allow({"tool", "colour", "distance", "strength", "radius", "depth", "falloff", "mirror", "layer"});
   Brush brush;
   brush.tool = field.at("tool").named<BrushTool>();
   const JsonField colour = field.at("colour");
@@ -27,6 +27,7 @@ Brush brush_from(const JsonField& field) {
   brush.edit.radius = length(field.at("radius"));
   brush.edit.depth_to = length(field.at("depth"));
   brush.edit.softness = static_cast<float>(field.at("falloff").number(0, most_mm));
+  brush.mirror = field.at("mirror").named<Mirror>();
   return brush;
 }
 
@@ -36,14 +37,10 @@ std::size_t layer_from(const JsonField& field, const Scene& scene) {
   return field.at("layer").whole(0, count > 0 ? count - 1 : 0);
 }
 
-std::optional<Touch> touch_at(Stage& stage, const glm::vec2& pixels) {
+Camera seen_from(Stage& stage) {
   const Scene& scene = stage.scene();
-  const auto found = picked_at(stage, pixels);
-  if (!found) return std::nullopt;
   const float aspect = static_cast<float>(scene.render.width) / static_cast<float>(scene.render.height);
-  Touch touch{touched(*found, place_camera(scene.view, stage.engine().bounds(), aspect))};
-  touch.body = body_name(*found, stage.engine().graph());
-  return touch;
+  return place_camera(scene.view, stage.engine().bounds(), aspect);
 }
 
 void rename(EditLayer& layer, const JsonField& value) {
@@ -62,7 +59,22 @@ Json to_json(const Brush& brush) {
           {"strength", real_json(brush.strength)},
           {"radius", real_json(brush.edit.radius)},
           {"depth", real_json(brush.edit.depth_to)},
-          {"falloff", real_json(brush.edit.softness)}};
+          {"falloff", real_json(brush.edit.softness)},
+          {"mirror", name_of(brush.mirror)}};
+}
+
+std::vector<Ring> brush_rings(Stage& stage, const JsonField& brush, const glm::vec2& pixels) {
+  const auto turn = stage.take();
+  const Brush hand = brush_from(brush);
+  Picker picker;
+  picker.follow(stage);
+  const Scene& scene = stage.scene();
+  auto rings = picker.rings(seen_from(stage), clip_place(scene, pixels), hand);
+  const glm::vec2 half(0.5f * static_cast<float>(scene.render.width), 0.5f * static_cast<float>(scene.render.height));
+  for (Ring& ring : rings) {
+    for (glm::vec2& place : ring) place = half * glm::vec2(1 + place.x, 1 - place.y);
+  }
+  return rings;
 }
 
 glm::vec2 clip_place(const Scene& scene, const glm::vec2& pixels) {
@@ -81,10 +93,14 @@ Painted painted(Stage& stage, const JsonField& brush, std::span<const glm::vec2>
     throw InputError("places: found " + std::to_string(places.size()) + ", allowed are 1 to " +
                      std::to_string(most_touches));
   }
+  const auto turn = stage.take();
   Brush hand = brush_from(brush);
   Painted made{.scene = stage.scene(), .layer = layer_from(brush, stage.scene())};
+  Picker picker;
+  picker.follow(stage);
+  const Camera camera = seen_from(stage);
   for (std::size_t i = 0; i < places.size(); ++i) {
-    const auto touch = touch_at(stage, places[i]);
+    const auto touch = picker.touch(camera, clip_place(made.scene, places[i]), hand.mirror);
     if (i == 0) made.touched = touch.has_value();
     if (!touch) {
       if (i == 0 && begins) break;  // beside the body

@@ -5,9 +5,11 @@
 #include <glm/vec2.hpp>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "engine/scene/brush.h"
 #include "engine/scene/json_field.h"
+#include "engine/scene/picker.h"
 #include "engine/scene/stage.h"
 
 namespace quadgraph {
@@ -22,13 +24,17 @@ struct Painted {
 };
 
 // {"tool": "paint", "colour": [.5, .04, .03], "distance": 1, "strength": 1, "radius": 4, "depth": 4, "falloff": 2,
-// "layer": 0}: tool and layer as of Brush::touch, colour linear, lengths in mm.
+// "mirror": "off", "layer": 0}: tool and layer as of Brush::touch, colour linear, lengths in mm.
 Json to_json(const Brush& brush);
 
 // The scene that the stage shows after such a brush has gone over `places` of its picture, pixels right and down from
 // its corner: `begins` says that a drag does there, else it goes on. Throws InputError with the path of what is wrong,
 // and where the layer is hidden.
 Painted painted(Stage& stage, const JsonField& brush, std::span<const glm::vec2> places, bool begins);
+
+// The rings that show how far such a brush reaches at a place of the picture, as Picker::rings, in pixels as above.
+// Throws InputError with the path of what is wrong.
+std::vector<Ring> brush_rings(Stage& stage, const JsonField& brush, const glm::vec2& pixels);
 
 // After {"layer": 0, "change": "add"}, what layers.h does to the active layer: "add", "remove", "up", "down", or
 // "name", "visible", "opacity" with a "value". Throws InputError with the path of what is wrong.

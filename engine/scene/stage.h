@@ -28,6 +28,10 @@ class Stage {
   Engine& engine();
   const Scene& scene() const { return scene_; }
 
+  // The stage for this thread alone, for what reads its engine, until that ends. Throws InputError where another
+  // thread has it.
+  [[nodiscard]] InUse::Turn take() { return in_use_.take(); }
+
   // What is to be said of the map that carried the material into the body; empty without one.
   const std::string& map_report() const { return map_report_; }
 

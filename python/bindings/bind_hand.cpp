@@ -1,7 +1,9 @@
 // What a hand does to a picture: which body it points at, strokes of the brush, layers.
 #include <pybind11/stl.h>
 
+#include <array>
 #include <cmath>
+#include <map>
 
 #include "engine/base/error.h"
 #include "engine/base/json_text.h"
@@ -55,6 +57,27 @@ std::string after_layer(Stage& stage, const std::string& json) {
   return told(relayered(stage.scene(), JsonField(asked, "layers")));
 }
 
+std::vector<std::vector<std::array<float, 2>>> rings_of_brush(Stage& stage, const std::string& json, double x,
+                                                              double y) {
+  const Json brush = parse_json(json);
+  std::vector<std::vector<std::array<float, 2>>> rings;
+  for (const Ring& ring : brush_rings(stage, JsonField(brush, "brush"), place_from(x, y))) {
+    auto& places = rings.emplace_back();
+    for (const glm::vec2& place : ring) places.push_back({place.x, place.y});
+  }
+  return rings;
+}
+
+// By the names of Mirror, what a user calls the sides of the body.
+std::map<std::string, std::string> mirrors_of_body(Stage& stage) {
+  const auto names = mirror_names(stage.engine().graph().front(), stage.scene().view.up);
+  std::map<std::string, std::string> sides;
+  for (const auto& mirror : Names<Mirror>::values) {
+    sides.emplace(mirror.name, names[static_cast<std::size_t>(mirror.value)]);
+  }
+  return sides;
+}
+
 std::vector<std::string> methods_of_body(Stage& stage) {
   const auto& levels = stage.engine().graph().levels();
   std::vector<std::string> names;
@@ -83,6 +106,12 @@ void bind_hand(py::module_& module) {
       "after_brush", &after_brush, py::arg("stage"), py::arg("brush"), py::arg("places"), py::arg("begins"),
       "JSON of {edits, layer, touched, colour, distance} after a brush (engine/scene/painting.h) went over places "
       "of the picture, pixels. Raises InputError.");
+  module.def(
+      "brush_rings", &rings_of_brush, py::arg("stage"), py::arg("brush"), py::arg("x"), py::arg("y"),
+      "Rings that show how far the brush reaches at a place of the picture, and on the other side by its mirror; "
+      "all in pixels. Raises InputError.");
+  module.def("mirrors_of_body", &mirrors_of_body, py::arg("stage"),
+             "Names of the sides that a brush paints, by the values of its `mirror`.");
   module.def("after_layer", &after_layer, py::arg("stage"), py::arg("json"),
              "The same after a change of the layers (engine/scene/painting.h). Raises InputError.");
   module.def(

@@ -9,11 +9,14 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Literal, Self, TypeAlias
 
+import numpy as np
+
 from quadgraph import core
 from quadgraph.api.engine import Engine
 from quadgraph.api.picture import Picture
 from quadgraph.api.scene import Scene, SceneFile
 from quadgraph.api.solution import Solution
+from quadgraph.base.array_types import Doubles
 from quadgraph.base.errors import InputError
 
 Gesture: TypeAlias = Literal["orbit", "pan", "zoom", "turn"]
@@ -111,12 +114,18 @@ class Stage:
         """Return the scene that is shown after a brush went over places of its picture, pixels right and down from its
         corner, at most 64 at once, as in the window; `begins`: a stroke begins, else the last one goes on there.
 
-        brush: `usual_brush` with other values, "tool" paint, erase or pick, and the number of a "layer", from 0; the
-        first stroke of a scene without layers makes one. Returned beside the scene: "touched", whether the first place
-        lies on a body, the "layer", and "colour" and "distance" of the brush, which `pick` takes up. Show the scene to
-        see it. Raises InputError, also for a layer that is hidden.
+        brush: `usual_brush` with other values, "tool" paint, erase or pick, "mirror" one of `mirrors`, and the number
+        of a "layer", from 0; the first stroke of a scene without layers makes one. Returned beside the scene:
+        "touched", whether the first place lies on a body, the "layer", and "colour" and "distance" of the brush, which
+        `pick` takes up. Show the scene to see it. Raises InputError, also for a layer that is hidden.
         """
         return self._edited(core.after_brush(self._open, json.dumps(dict(brush)), list(places), begins))
+
+    def brush_rings(self, brush: Mapping[str, Any], place: tuple[float, float]) -> list[Doubles]:
+        """Return rings, (48, 2) pixels, that show how far a brush reaches at a place of the picture of the scene that
+        is shown: on the body, and where the mirror image is seen. None beside the body. Raises InputError.
+        """
+        return [np.array(ring) for ring in core.brush_rings(self._open, json.dumps(dict(brush)), *map(float, place))]
 
     def relayered(self, change: Mapping[str, Any]) -> tuple[Scene, dict[str, Any]]:
         """Return the scene that is shown after a change of its layers: {"layer": 0, "change": "add"}, and alike remove,
@@ -134,10 +143,17 @@ class Stage:
     @property
     def usual_brush(self) -> dict[str, Any]:
         """The brush that a body of this size has at first: "tool", "colour" (linear), "distance" that light goes in it,
-        "radius", "depth" and "falloff", mm, "strength" 0 to 1. Raises InputError before the first scene.
+        "radius", "depth" and "falloff", mm, "strength" 0 to 1, "mirror" off. Raises InputError before the first scene.
         """
         brush: dict[str, Any] = json.loads(core.usual_brush(self._open))
         return brush
+
+    @property
+    def mirrors(self) -> dict[str, str]:
+        """What "mirror" of a brush may be: off, or an axis across which it paints both sides, and what a user calls
+        these sides of the body. Raises InputError before the first scene.
+        """
+        return core.mirrors_of_body(self._open)
 
     @property
     def methods(self) -> tuple[str, ...]:

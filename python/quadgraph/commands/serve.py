@@ -77,6 +77,7 @@ def run(args: argparse.Namespace) -> int:
             "methods": list(stage.methods),
             "models": list(get_args(Model)),
             "brush": stage.usual_brush,
+            "mirrors": stage.mirrors,
             "box": [low.tolist(), high.tolist()],
         }
         server = Server(args.host, args.port, token, hello)

@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <map>
 
-#include "engine/app/outline.h"
+#include "engine/render/display/outline.h"
 
 using namespace quadgraph;
 

@@ -113,6 +113,27 @@ def test_a_stroke_is_seen_undone_and_hidden_with_its_layer(browser, ball):
         assert hand.errors() == []
 
 
+def test_a_mirrored_stroke_is_seen_on_both_sides(browser, ball):
+    from selenium.webdriver.support.ui import Select
+
+    with served(ball, "--material", "wholemilk", *LOOK) as (_, address):
+        hand = PageHand(browser, address)
+        clean = hand.picture()
+        hand.open("Paint")
+        hand.find("paints").click()
+        mirror = Select(hand.find("mirror"))
+        assert [option.text for option in mirror.options][:2] == ["off", "left-right (X)"]
+        mirror.select_by_value("x")
+        for name in ("radius", "depth"):  # powers of two of those at first
+            browser.execute_script(f"$('{name}').value = 1; $('{name}').dispatchEvent(new Event('input'))")
+        painted = hand.after(lambda: hand.drag((100, -20), (0, 20), (0, 20)))
+        for aside in (100, -100):
+            assert green_at(painted, aside, 0) < 0.7 * green_at(clean, aside, 0)
+        assert green_at(painted, 0, -180) == pytest.approx(green_at(clean, 0, -180), rel=0.1)
+        assert hand.says("said.layers[0].strokes") == 1
+        assert hand.errors() == []
+
+
 def test_a_cut_shows_the_inside_and_the_method_changes_and_comes_back(browser, ball):
     from selenium.webdriver.support.ui import Select
 

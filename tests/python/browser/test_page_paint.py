@@ -111,6 +111,56 @@ def test_a_colour_is_picked_up(shown, hand):
     assert strokes(shown) == [1]
 
 
+def test_a_mirrored_stroke_lies_on_both_sides_as_that_of_the_stage(shown, stage, hand):
+    """The ball lies about the origin, seen along z; its faces have no mirror image."""
+    places = [[0.55 + 0.01 * k, 0.4] for k in range(6)]
+    start, brush = shown.scene, {**stage.usual_brush, "layer": 0, "mirror": "x"}
+    hand(places[0], mirror="x")
+    hand(*places[1:], begins=False, mirror="x")
+    (edit,) = shown.document["edits"]
+    here, there = np.array(edit["stroke"]), np.array(edit["mirrored"]["stroke"])
+    assert len(here) > 1
+    assert there == pytest.approx(here * [-1, 1, 1], abs=0.3)
+    assert np.linalg.norm(there, axis=1) == pytest.approx(10, abs=0.4)
+    stage.show(start)
+    pixels = [(x * 96, y * 64) for x, y in places]
+    assert stage.painted(brush, pixels)[0].to_dict()["edits"] == [edit]
+    hand([0.45, 0.4], tool="erase")  # where the mirror image is
+    assert strokes(shown) == [0]
+    for axis, (x, y, z) in {"y": (1, -1, 1), "z": (1, 1, -1)}.items():
+        hand([0.55, 0.4], mirror=axis)
+        (edit,) = shown.document["edits"]
+        (point,), (image,) = edit["stroke"], edit["mirrored"]["stroke"]
+        assert image == pytest.approx(np.array(point) * [x, y, z], abs=0.3)
+        shown.undo()
+    hand([0.55, 0.4])
+    assert "mirrored" not in shown.document["edits"][0]
+
+
+def test_sides_of_the_mirror_have_the_names_of_the_window(stage):
+    assert stage.mirrors == {"off": "off", "x": "left-right (X)", "y": "top-bottom (Y)", "z": "front-back (Z)"}
+
+
+def test_rings_are_of_the_brush_on_the_body_and_on_its_seen_other_side(shown, stage):
+    """Of an orthographic picture of the ball 24 mm high, in 64 pixels."""
+    shown.set("/camera", {"azimuth": 0, "elevation": 0, "orthographic": 24})
+    stage.show(shown.scene)
+    brush = {**stage.usual_brush, "radius": 3}
+    (ring,) = stage.brush_rings(brush, (48, 32))
+    assert ring.mean(0) == pytest.approx([48, 32], abs=0.5)
+    assert np.linalg.norm(ring - [48, 32], axis=1) == pytest.approx(3 * 64 / 24, rel=0.1)
+    here, there = stage.brush_rings({**brush, "mirror": "x"}, (60, 26))
+    assert here.mean(0) == pytest.approx([60, 26], abs=0.5)
+    assert there.mean(0) == pytest.approx([36, 26], abs=1)
+    assert len(stage.brush_rings({**brush, "mirror": "z"}, (60, 26))) == 1  # the other side is behind
+    assert stage.brush_rings(brush, (1, 1)) == []
+    for wrong in ({"radius": -1}, {"mirror": "w"}):
+        with pytest.raises(InputError, match=next(iter(wrong))):
+            stage.brush_rings({**brush, **wrong}, (48, 32))
+    with pytest.raises(InputError, match="finite"):
+        stage.brush_rings(brush, (float("nan"), 0))
+
+
 def test_layers_are_added_named_hidden_moved_and_removed(shown, stage, hand):
     def change(what, layer=0, **value):
         stage.show(shown.scene)
@@ -152,6 +202,9 @@ def test_layers_are_added_named_hidden_moved_and_removed(shown, stage, hand):
         ({"strength": 2}, "strength"),
         ({"distance": 0}, "distance"),
         ({"tool": "hammer"}, "tool"),
+        ({"mirror": "w"}, "mirror"),
+        ({"mirror": ["x"]}, "mirror"),
+        ({"mirror": None}, "mirror"),
         ({"layer": 1}, "layer"),
         ({"layer": -1}, "layer"),
         ({"layer": 0.5}, "layer"),

@@ -182,6 +182,7 @@ HOSTILE = [
     '{"paint": {}, "at": [[0.5, 0.5]], "begins": true}',
     '{"paint": {"tool": "paint"}, "at": 7, "begins": true}',
     '{"paint": {"tool": "paint"}, "at": [[0.5, 0.5]], "begins": "yes"}',
+    '{"paint": {"tool": "paint", "mirror": "x" }, "at": [[0.5, 0.5]], "begins": true}',
     '{"paint": {"tool": [[[]]]}, "at": [[0.5, 0.5]]}',
     '{"layers": {"layer": 0, "change": "remove all"}}',
     '{"layers": {"layer": 7, "change": "add"}}',
@@ -215,7 +216,7 @@ def test_a_page_paints_cuts_and_is_told_why_there_is_no_picture(ball):
     async def conversation(socket):
         hello = (await heard(socket, lambda said: "hello" in said))["hello"]
         await heard(socket, is_frame(True))
-        brush = {**hello["brush"], "layer": 0}
+        brush = {**hello["brush"], "layer": 0, "mirror": "x"}
         await socket.send_json({"paint": brush, "at": [[0.01, 0.01]], "begins": True})
         beside = (await heard(socket, lambda said: "painted" in said))["painted"]
         await socket.send_json({"paint": brush, "at": [[0.5, 0.5]], "begins": True})
@@ -250,6 +251,13 @@ def test_a_page_paints_cuts_and_is_told_why_there_is_no_picture(ball):
         saved = json.load(urllib.request.urlopen(address.replace("/?", "/scene.json?"), timeout=PATIENCE))
         (layer,) = saved["edits"]
         assert len(layer["edits"][0]["stroke"]) > 1
+        assert hello["mirrors"]["x"] == "left-right (X)"
+        with quadgraph.Stage(device="cpu") as stage:  # which paints the same
+            stage.show(quadgraph.Scene.from_dict(saved | {"edits": []}))
+            width, height = (saved["picture"][side] for side in ("width", "height"))
+            brush = {**stage.usual_brush, "layer": 0, "mirror": "x"}
+            scene, _ = stage.painted(brush, [(x * width, 0.5 * height) for x in (0.5, 0.55, 0.6)])
+        assert json.loads(json.dumps(scene.to_dict()["edits"])) == layer["edits"]
 
 
 @pytest.mark.parametrize(

@@ -29,6 +29,7 @@ function greetBrush(told) {
   brush = { ...told.brush, tool: "paint" };
   $("brush-colour").value = hex(brush.colour);
   if (!$("placement").children.length) buildPlacement();
+  fill($("mirror"), Object.keys(told.mirrors), (name) => told.mirrors[name]);
   fill($("method"), told.methods, (name) => name);
   fill($("model"), told.models, (name) => name);
   showBrush();
@@ -88,6 +89,7 @@ function showBrush() {
   $("depth").parentElement.querySelector("output").textContent = millimetres(brush.depth);
   $("strength").value = brush.strength;
   $("strength").parentElement.querySelector("output").textContent = `${Math.round(100 * brush.strength)}%`;
+  $("mirror").value = brush.mirror;
   $("paints").checked = paints;
   for (const radio of document.getElementsByName("tool")) radio.checked = radio.value === brush.tool;
   $("view").classList.toggle("paints", paints);
@@ -260,6 +262,7 @@ function listenBrush() {
   slide("depth", (power) => { brush.depth = hello.brush.depth * 2 ** power; });
   slide("strength", (share) => { brush.strength = share; });
   for (const id of ["radius", "depth"]) Object.assign($(id), { min: RADIUS_STEPS.least, max: RADIUS_STEPS.most, step: 0.1 });
+  $("mirror").addEventListener("change", () => { brush.mirror = $("mirror").value; });
   slider("opacity", (share) => change("opacity", share));
   $("add-layer").addEventListener("click", () => change("add"));
   $("remove-layer").addEventListener("click", () => change("remove"));

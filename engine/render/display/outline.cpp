@@ -1,4 +1,4 @@
-#include "engine/app/outline.h"
+#include "engine/render/display/outline.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,15 +1,18 @@
-// What lies under the pointer, told at any time: also while the engine computes.
+// What lies under the pointer, and where the brush touches it, told at any time: also while the engine computes.
 #pragma once
 
 #include <memory>
 #include <optional>
 #include <vector>
 
-#include "engine/app/outline.h"
+#include "engine/render/display/outline.h"
 #include "engine/render/display/pick.h"
+#include "engine/scene/brush.h"
 #include "engine/scene/stage.h"
 
 namespace quadgraph {
+
+using Ring = std::vector<glm::vec2>;  // clip coordinates
 
 class Picker {
  public:
@@ -19,8 +22,12 @@ class Picker {
   // As the function pick, of what was followed last; empty before.
   std::optional<Picked> pick(const Camera& camera, const glm::vec2& at) const;
 
-  // As the function nearest_to, of what was followed last.
-  std::optional<Picked> nearest_to(const glm::vec3& at_rest) const;
+  // Where a brush with that mirror touches what lies there.
+  std::optional<Touch> touch(const Camera& camera, const glm::vec2& at, Mirror mirror) const;
+
+  // The brush's edge on the body around that place, and around the place on the other side where it paints both and
+  // that place looks towards the eye. Empty beside the body.
+  std::vector<Ring> rings(const Camera& camera, const glm::vec2& at, const Brush& brush) const;
 
   // The number of the body that was picked, of those that the file names.
   std::uint32_t body_of(const Picked& picked) const;
@@ -28,10 +35,9 @@ class Picker {
   // As the function outline_of, of what was followed last.
   std::vector<Segment> outline(std::uint32_t body, const Camera& camera, float aspect) const;
 
-  // mm, the middle of the body's box at rest.
-  glm::vec3 middle() const;
-
  private:
+  std::optional<Picked> other_side(const Picked& found, Mirror mirror) const;
+
   const QuadGraph* graph_ = nullptr;
   std::shared_ptr<const std::vector<glm::vec3>> vertices_;  // mm, where they are now
   std::vector<gpu::PathTool> tools_;
