@@ -1,7 +1,8 @@
 """Frames of a scene that changes: quick ones while it does, and the whole picture at rest.
 
 The engine is used by the thread that runs `FrameLoop.run`, the main one, whose solve at rest a signal ends where
-something changes; the server's thread hands over what pages say and takes what they are to show.
+something changes, and interrupts to tell where rings of the brush lie; the server's thread hands over what pages say
+and takes what they are to show.
 """
 
 from __future__ import annotations
@@ -76,25 +77,40 @@ class FrameLoop:
         before = signal.signal(signal.SIGUSR1, self._heed_drop)
         try:
             self._move()
+            settled = time.monotonic() + _SETTLED_S
             while True:
-                messages = self.inbox.take(_SETTLED_S if self._at_rest is None else None)
+                wait = max(0.0, settled - time.monotonic()) if self._at_rest is None else None
+                messages = self.inbox.take(wait)
+                self._tell_rings()
                 if messages:
                     self._take(messages)
-                else:
+                    settled = time.monotonic() + _SETTLED_S
+                elif self._at_rest is None and time.monotonic() >= settled:
                     self._rest()
         finally:
             self._droppable = False
             signal.signal(signal.SIGUSR1, before)
 
     def _drop(self) -> None:
-        """End the solve at rest, from any thread."""
+        """End the solve at rest, or have it tell rings, from any thread."""
         if self._droppable:
             signal.pthread_kill(self._main, signal.SIGUSR1)
 
     def _heed_drop(self, _number: int, _frame: FrameType | None) -> None:
-        if self._droppable:
+        if self._droppable and self.inbox.waiting:
             self._droppable = False
             raise _Dropped
+        if self._droppable:
+            self._tell_rings()
+
+    def _tell_rings(self) -> None:
+        """Answer what asks for rings: in the midst of a solve, too, which only reads what they are made of."""
+        for message in self.inbox.take_rings():
+            asked = message.content
+            try:
+                message.answer({"rings": self._shown.rings(self._stage, asked["ring"], asked.get("at"))})
+            except QuadGraphError as error:
+                message.refuse(str(error))
 
     def _take(self, messages: list[Message]) -> None:
         """Do what was said, and show it."""
@@ -170,6 +186,7 @@ class FrameLoop:
             self._droppable = True
             if self.inbox.waiting:  # what was said before is not told by a signal
                 raise _Dropped
+            self._tell_rings()
             return work()
         finally:
             self._droppable = False

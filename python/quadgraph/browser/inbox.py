@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import threading
 from collections import deque
 from collections.abc import Callable, Mapping
@@ -12,6 +13,7 @@ from quadgraph.browser.page_values import MOST_PLACES
 from quadgraph.browser.shown_scene import GESTURES
 
 _MOST_WAITING = 256  # messages
+_MOST_RINGS = 16  # of the brush, asked for; the newest
 
 
 @dataclass(frozen=True)
@@ -32,12 +34,21 @@ class Inbox:
     def __init__(self, wake: Callable[[], None]) -> None:
         """wake: called after each message."""
         self._waiting: deque[Message] = deque()
+        self._rings: deque[Message] = deque(maxlen=_MOST_RINGS)
         self._changed = threading.Condition()
         self._wake = wake
 
     def put(self, message: Message) -> None:
-        """Add one; a gesture joins the one before it where both are of a kind. Refuses where too many wait."""
+        """Add one; a gesture joins the one before it where both are of a kind. Refuses where too many wait.
+
+        What asks for a ring changes nothing, and waits apart.
+        """
         with self._changed:
+            if "ring" in message.content:
+                self._rings.append(message)
+                self._changed.notify()
+                self._wake()
+                return
             last = self._waiting[-1] if self._waiting else None
             joined = _joined(last.content, message.content) if last else None
             if joined is not None:
@@ -52,15 +63,25 @@ class Inbox:
 
     @property
     def waiting(self) -> bool:
-        """Whether there is anything to do; asked without the lock, which an exception of a signal might leave held."""
+        """Whether there is anything to do, rings apart; asked without the lock, which an exception of a signal might
+        leave held.
+        """
         return bool(self._waiting)
 
     def take(self, seconds: float | None) -> list[Message]:
-        """Wait so long, or None for ever, for messages, and take all there are."""
+        """Wait so long, or None for ever, for messages, and take all there are; none where only rings are asked for."""
         with self._changed:
-            self._changed.wait_for(lambda: bool(self._waiting), seconds)
+            self._changed.wait_for(lambda: bool(self._waiting or self._rings), seconds)
             found = list(self._waiting)
             self._waiting.clear()
+        return found
+
+    def take_rings(self) -> list[Message]:
+        """Take what asks for rings, without waiting and without the lock, for the handler of a signal."""
+        found = []
+        for _ in range(len(self._rings)):
+            with contextlib.suppress(IndexError):  # the newest push out the oldest, from another thread
+                found.append(self._rings.popleft())
         return found
 
 

@@ -42,6 +42,7 @@ LEAST_SIDE, MOST_SIDE = 64, 2048  # pixels
 MOST_MEMBERS = 256  # lights, steps of a deformation, cuts
 MOST_STROKE_POINTS = 50_000  # of all strokes together
 MOST_UNDONE = 100
+_DIGITS = 5  # of shares of the picture: a fiftieth of a pixel
 _CUTTING = "shortest-path"  # the method that alone shows cuts
 GESTURES = {"orbit": "camera", "pan": "camera", "zoom": "camera", "turn": "lights"}
 _SIDES = ("/picture/width", "/picture/height")
@@ -168,6 +169,17 @@ class ShownScene:
         scene, state = stage.painted(brush, pixels, begins=begins)
         self._take_edits(scene, "/edits, a stroke")
         return state | {"layers": self.layers}
+
+    def rings(self, stage: Stage, brush: Any, place: Any) -> list[list[list[float]]]:
+        """Rings of a brush about a place [x, y] of the picture of the scene that the stage shows (`Stage.brush_rings`),
+        all in shares of its size right and down. Raises InputError.
+        """
+        if not isinstance(brush, dict):
+            raise InputError(f"ring: found {shown(brush)}, a brush is wanted; docs/window.md, In a browser")
+        size = np.array([self.scene.picture[side] for side in ("width", "height")])
+        ((x, y),) = shares("at", [place])
+        found = stage.brush_rings(brush, (x * size[0], y * size[1]))
+        return [np.round(ring / size, _DIGITS).tolist() for ring in found]
 
     def relayer(self, stage: Stage, change: Any) -> dict[str, Any]:
         """Change the layers of the scene that the stage shows, as `Stage.relayered`. Raises InputError."""

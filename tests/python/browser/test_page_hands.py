@@ -61,8 +61,18 @@ class PageHand:
         return self.picture()
 
     def picture(self):
+        """What is seen, rings of the brush apart."""
+        self.browser.execute_script("$('rings').style.display = 'none'")
         png = self.find("view").screenshot_as_png
+        self.browser.execute_script("$('rings').style.display = ''")
         return np.asarray(Image.open(io.BytesIO(png)).convert("RGB")).astype(float)
+
+    def rings(self):
+        """Of the brush, as (left, top, right, bottom) from the middle of the picture."""
+        box = "(r => [r.x, r.y, r.right, r.bottom])(each.getBoundingClientRect())"
+        found = np.array(self.says(f"[...document.querySelectorAll('#rings .line')].map((each) => {box})"))
+        view = self.says("(r => [r.x + r.width / 2, r.y + r.height / 2])($('view').getBoundingClientRect())")
+        return found - np.tile(view, 2) if len(found) else found
 
     def open(self, *summaries):
         for summary in self.browser.find_elements("tag name", "summary"):
@@ -127,6 +137,12 @@ def test_a_mirrored_stroke_is_seen_on_both_sides(browser, ball):
         for name in ("radius", "depth"):  # powers of two of those at first
             browser.execute_script(f"$('{name}').value = 1; $('{name}').dispatchEvent(new Event('input'))")
         painted = hand.after(lambda: hand.drag((100, -20), (0, 20), (0, 20)))
+        wait_for(lambda: len(hand.rings()) == 2)
+        here, there = hand.rings()
+        assert (here[:2] + here[2:]) / 2 == pytest.approx([100, 20], abs=6)  # where the pointer stays
+        assert there == pytest.approx(here[[2, 1, 0, 3]] * [-1, 1, -1, 1], abs=8)
+        hand.drag((-hand.find("view").size["width"] // 2 + 4, 0))  # beside the ball
+        wait_for(lambda: len(hand.rings()) == 0)
         for aside in (100, -100):
             assert green_at(painted, aside, 0) < 0.7 * green_at(clean, aside, 0)
         assert green_at(painted, 0, -180) == pytest.approx(green_at(clean, 0, -180), rel=0.1)

@@ -10,6 +10,8 @@ import two_cubes
 from baked import write_levels
 from quadgraph.base.errors import InputError
 from quadgraph.browser import shown_scene
+from quadgraph.browser.frame_loop import FrameLoop
+from quadgraph.browser.inbox import Inbox, Message
 from quadgraph.browser.shown_scene import ShownScene
 from shapes import icosphere
 
@@ -159,6 +161,72 @@ def test_rings_are_of_the_brush_on_the_body_and_on_its_seen_other_side(shown, st
             stage.brush_rings({**brush, **wrong}, (48, 32))
     with pytest.raises(InputError, match="finite"):
         stage.brush_rings(brush, (float("nan"), 0))
+
+
+def rings_asked(stage):
+    return {"ring": {**stage.usual_brush, "mirror": "x"}, "at": [0.6, 0.5]}
+
+
+def test_rings_are_told_during_a_solve_which_goes_on(shown, stage, monkeypatch):
+    """And a change ends it."""
+    told, solves, frames = [], [], []
+    solve = stage.solve
+
+    def solving():
+        solves.append(len(told))
+        assert len(solves) <= 2, "rings have ended it"
+        loop.inbox.put(Message(rings_asked(stage), told.append))
+        assert len(told) == len(solves)
+        if len(solves) == 1:
+            loop.inbox.put(Message({"set": "/material", "value": "marble"}, told.append))
+            pytest.fail("the solve goes on")
+        return solve()
+
+    def show(frame):
+        frames.append(frame)
+        if frame.said["rest"]:
+            raise KeyboardInterrupt
+
+    loop = FrameLoop(stage, shown, show)
+    monkeypatch.setattr(stage, "solve", solving)
+    with pytest.raises(KeyboardInterrupt):
+        loop.run()
+    assert solves == [0, 1]
+    assert [len(each["rings"]) for each in told] == [2, 2]
+    assert frames[-1].scene["material"] == "marble"
+    middle = np.mean(told[0]["rings"], axis=1)
+    assert middle[0] == pytest.approx([0.6, 0.5], abs=0.02)
+    assert middle[1] == pytest.approx([0.4, 0.5], abs=0.03)
+
+
+def test_rings_that_are_asked_for_all_the_time_do_not_put_off_the_picture_at_rest(shown, stage, monkeypatch):
+    loop = FrameLoop(stage, shown, lambda frame: None)
+    told = []
+
+    def ask_again(answer):
+        told.append(answer)
+        assert len(told) < 100_000, "there is no picture at rest"
+        loop.inbox.put(Message(rings_asked(stage), ask_again))
+
+    def solving():
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(stage, "solve", solving)
+    monkeypatch.setattr(loop.inbox, "_wake", lambda: None)
+    loop.inbox.put(Message(rings_asked(stage), ask_again))
+    with pytest.raises(KeyboardInterrupt):
+        loop.run()
+    assert len(told) > 1
+
+
+def test_of_rings_that_are_asked_for_the_newest_wait():
+    inbox = Inbox(lambda: None)
+    for number in range(100):
+        inbox.put(Message({"ring": {}, "at": [number, 0]}, print))
+    assert not inbox.waiting
+    assert inbox.take(0) == []
+    assert [message.content["at"][0] for message in inbox.take_rings()] == list(range(84, 100))
+    assert inbox.take_rings() == []
 
 
 def test_layers_are_added_named_hidden_moved_and_removed(shown, stage, hand):

@@ -130,12 +130,15 @@ def test_it_hears_while_it_solves_and_drops_what_nobody_waits_for(ball):
     """A picture of so many samples takes many minutes: nothing is at rest before this has ended."""
 
     async def conversation(socket):
+        brush = (await heard(socket, lambda said: "hello" in said))["hello"]["brush"]
         await heard(socket, is_frame(False))
         serials = []
         for step in range(3):
             await asyncio.sleep(0.6)  # it has begun with the picture at rest
             await socket.send_json({"ping": step})
             await heard(socket, lambda said, step=step: said.get("pong") == step)
+            await socket.send_json({"ring": brush, "at": [0.5, 0.5]})
+            assert (await heard(socket, lambda said: "rings" in said))["rings"]
             await socket.send_json({"set": "/lights/0/irradiance", "value": 0.001 * (step + 1)})
             frame = (await heard(socket, lambda said: "frame" in said))["frame"]
             assert not frame["rest"]
@@ -184,6 +187,10 @@ HOSTILE = [
     '{"paint": {"tool": "paint"}, "at": [[0.5, 0.5]], "begins": "yes"}',
     '{"paint": {"tool": "paint", "mirror": "x" }, "at": [[0.5, 0.5]], "begins": true}',
     '{"paint": {"tool": [[[]]]}, "at": [[0.5, 0.5]]}',
+    '{"ring": 7, "at": [0.5, 0.5]}',
+    '{"ring": {"tool": "paint"}, "at": [0.5, 0.5]}',
+    '{"ring": {"tool": "paint"}, "at": [[0.5, 0.5]]}',
+    '{"ring": {"tool": "paint"}}',
     '{"layers": {"layer": 0, "change": "remove all"}}',
     '{"layers": {"layer": 7, "change": "add"}}',
     '{"layers": {"layer": 0, "change": "name", "value": "\\u0000"}}',

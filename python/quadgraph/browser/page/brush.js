@@ -3,6 +3,7 @@
 
 const CLICK_PIXELS = 5;  // that a click may move
 const MOST_PLACES = 64;  // of a stroke in one message
+const PATIENCE_MS = 500;  // with an answer about rings
 const RADIUS_STEPS = { least: -3, most: 3 };  // powers of two of the radius at first
 
 const EYE = '<svg viewBox="0 0 20 20"><path d="M2 10q8 9 16 0"/><g class="open"><path d="M2 10q8-9 16 0"/><circle cx="10" cy="10" r="2.4"/></g></svg>';
@@ -12,14 +13,22 @@ let body = "";  // whose material is changed; empty: that of all
 let layer = 0;  // the active one
 let paints = false;
 let brush = { tool: "paint" };
+let pointed = null;  // where the pointer is that may paint
+let asked = -Infinity;  // when rings were asked for that have not come
+let asksAgain = false;
 let stroke = null;  // that is being led, or whose beginning has not been answered
+
+// Where the picture lies in the view, pixels.
+function pictureBox() {
+  const box = $("view").getBoundingClientRect(), { width, height } = said.scene.picture;
+  const scale = Math.min(box.width / width, box.height / height), wide = width * scale, high = height * scale;
+  return { box, left: (box.width - wide) / 2, top: (box.height - high) / 2, wide, high };
+}
 
 // Where a pointer is in the picture: shares of its width and height, right and down.
 function place(event) {
-  const box = $("view").getBoundingClientRect(), { width, height } = said.scene.picture;
-  const scale = Math.min(box.width / width, box.height / height);
-  const share = (at, low, whole, side) => (at - low - (whole - side * scale) / 2) / (side * scale);
-  return [share(event.clientX, box.left, box.width, width), share(event.clientY, box.top, box.height, height)];
+  const { box, left, top, wide, high } = pictureBox();
+  return [(event.clientX - box.left - left) / wide, (event.clientY - box.top - top) / high];
 }
 
 function greetBrush(told) {
@@ -98,6 +107,43 @@ function showBrush() {
 function take(on) {
   paints = on;
   showBrush();
+  askRings();
+}
+
+// Rings on the body, as far as the brush reaches; one question at a time.
+
+function point(event) {
+  pointed = event && said && (!drag || drag.paint) ? place(event) : null;
+  askRings();
+}
+
+function askRings() {
+  if (!paints || !pointed) return drawRings([]);
+  const now = performance.now();
+  asksAgain = now - asked < PATIENCE_MS;
+  if (asksAgain) return;
+  asked = now;
+  send({ ring: { ...brush, layer }, at: pointed });
+}
+
+function hearRings(found) {
+  asked = -Infinity;
+  drawRings(paints && pointed ? found : []);
+  if (asksAgain) askRings();
+}
+
+function drawRings(found) {
+  const { left, top, wide, high } = found.length ? pictureBox() : {};
+  $("rings").replaceChildren(...found.flatMap((ring) => {
+    const points = ring.map(([x, y]) => `${left + x * wide},${top + y * high}`).join(" ");
+    return ["edge", "colour", "line"].map((part) => {
+      const made = document.createElementNS("http://www.w3.org/2000/svg", "polygon");
+      made.setAttribute("class", part);
+      made.setAttribute("points", points);
+      if (part === "colour") made.setAttribute("stroke", hex(brush.colour));
+      return made;
+    });
+  }));
 }
 
 function paint(at, begins) {

@@ -43,6 +43,7 @@ function hear(message) {
   if (message.hello) greet(message.hello);
   if (message.frame) tell(message.frame);
   if ("picked" in message) choose(message.picked, picks.shift());
+  if (message.rings) hearRings(message.rings);
   if (message.painted) painted(message.painted);
   if (message.layered) layered(message.layered);
   if (message.refused) {
@@ -82,6 +83,7 @@ function tell(frame) {
   document.body.dataset.serial = frame.serial;
   if (!frame.width) send({ shown: frame.serial });
   controls(frame);
+  askRings();
 }
 
 function item(text) {
@@ -221,7 +223,9 @@ function gestures() {
     if (paints) beginStroke(event);
     else drag.clicks = hello.bodies.length > 1;
   });
+  view.addEventListener("pointerleave", () => point(null));
   view.addEventListener("pointermove", (event) => {
+    point(event);
     if (!drag) return;
     if (drag.paint) return leadStroke(event);
     const right = event.clientX - drag.x, up = drag.y - event.clientY;
