@@ -98,7 +98,7 @@ def fit(
     scale, off, cost, radius = max(reach, _LEAST_SCALE), np.inf, np.inf, body.body.radius
     for _ in range(steps):
         distances, rows, middle = _rows(body, silhouettes, pose, most)
-        if len(distances) < 6:
+        if len(distances) < 6 or not rows.any():
             return PoseFit(pose, np.inf, np.inf, normal)
         weights = 1 / (1 + (distances / scale) ** 2)
         off = float(np.sqrt((weights * distances**2).sum() / weights.sum()))
