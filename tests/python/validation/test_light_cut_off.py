@@ -69,8 +69,8 @@ def test_a_slab_scatters_once_what_an_integral_says(thickness):
 
 
 def test_the_study_says_what_is_lost_and_what_too_few_walks_cannot_tell(monkeypatch):
-    monkeypatch.setattr(cutoff_study, "THICKNESSES", (14.0, np.inf))
-    monkeypatch.setattr(cutoff_study, "ALBEDOS", (0.5, 0.9992))
+    cases = [(thickness, albedo, eta) for thickness in (14.0, np.inf) for albedo in (0.5, 0.9992) for eta in (1.0, 1.4)]
+    monkeypatch.setattr(cutoff_study, "CASES", cases)
     record = json.loads(json.dumps(cutoff_study.run(None, 4000)))
     dark, bright = (row for row in record["rows"] if row["eta"] == 1 and row["thickness"] == 14)
     assert "lost" not in dark["transmittance"]
