@@ -43,7 +43,7 @@ class Laid:
     def off(self, pose: BodyPose) -> tuple[float, float]:
         """Degrees and mm between a pose and the true one, the latter of the middle."""
         turn = Rotation.from_matrix(pose.rotation @ self.true.rotation.T).magnitude()
-        middle = self.body.body.middle[None]
+        middle = self.body.surface.middle[None]
         return float(np.degrees(turn)), float(np.linalg.norm(pose.places(middle) - self.true.places(middle)))
 
 
@@ -53,7 +53,7 @@ def laid(mesh: trimesh.Trimesh, seed: int, count: int = 4, elevation: float = 45
     body = OutlinedBody(vertices, np.asarray(mesh.faces))
     generator = np.random.default_rng(seed)
     turn = Rotation.random(random_state=seed).as_matrix()
-    true = BodyPose(turn, MIDDLE + generator.uniform(-12, 12, 3) - turn @ body.body.middle)
+    true = BodyPose(turn, MIDDLE + generator.uniform(-12, 12, 3) - turn @ body.surface.middle)
     poses = board_photographs.around(MIDDLE, 330.0, count, elevation, float(generator.uniform(0, 60)))
     return Laid(body, true, poses, masks_of(PlacedBody(true.places(vertices), np.asarray(mesh.faces)), poses))
 
@@ -83,13 +83,13 @@ def test_a_pose_is_found_from_anywhere(potato):
     degrees, mm = potato.off(found.pose)
     assert degrees < 0.5
     assert mm < 0.05
-    assert found.off < 0.2
-    assert found.shared > 0.98
-    assert found.degrees is not None
-    assert found.mm is not None
-    assert degrees < 5 * found.degrees
-    assert mm < 5 * found.mm
-    assert not found.symmetric
+    assert found.told.off < 0.2
+    assert found.told.shared > 0.98
+    assert found.told.degrees is not None
+    assert found.told.mm is not None
+    assert degrees < 5 * found.told.degrees
+    assert mm < 5 * found.told.mm
+    assert not found.told.symmetric
     assert shares == sorted(shares)
 
 
@@ -120,9 +120,9 @@ def test_a_mask_that_misses_half_of_the_body_is_left_out(potato):
     masks[1][:, left + 20 :] = False
     spoilt = Laid(potato.body, potato.true, potato.poses, masks).silhouettes()
     found = pose_search.searched(potato.body, spoilt)
-    assert list(found.others) == ["photographs[1]"]
-    assert found.others["photographs[1]"] < 0.8
-    assert found.photographs == 3
+    assert list(found.told.others) == ["photographs[1]"]
+    assert found.told.others["photographs[1]"] < 0.8
+    assert found.told.photographs == 3
     assert potato.off(found.pose)[1] < 0.05
 
 
@@ -131,7 +131,7 @@ def test_what_looks_the_same_turned_otherwise_is_said(name):
     meshes = {"ball": of(icosphere(4, 25.0)), "ring": of(torus()), "bar": trimesh.creation.box((60, 40, 20))}
     case = laid(meshes[name], 3, 4)
     found = pose_search.searched(case.body, case.silhouettes())
-    assert found.symmetric
+    assert found.told.symmetric
     assert case.off(found.pose)[1] < 0.05
 
 
@@ -156,7 +156,7 @@ def test_what_cannot_be_told_is_refused(potato):
         pose_search.searched(potato.body, silhouettes[:1])
     with pytest.raises(pose_search.PoseError, match=r"from one side, to 0\.0 degrees, allowed are more than 10"):
         pose_search.searched(potato.body, [silhouettes[0]] * 2)
-    larger = OutlinedBody(1.5 * potato.body.body.vertices, potato.body.body.triangles)
+    larger = OutlinedBody(1.5 * potato.body.surface.vertices, potato.body.surface.triangles)
     with pytest.raises(pose_search.PoseError, match=r"the body shares \d\d% with the masks, allowed are 85%"):
         pose_search.refined(larger, silhouettes, potato.true)
 
@@ -176,7 +176,7 @@ def test_numbers_of_the_page(capsys):
                 refused.append(str(error))
                 continue
             rows.append(case.off(found.pose))
-            told.append((found.degrees, found.mm))
+            told.append((found.told.degrees, found.told.mm))
         errors, deviations = np.array(rows), np.array(told, float)
         with capsys.disabled():
             print(f"\n{name}: {len(rows)} of 20 told; degrees, mm:", end=" ")

@@ -17,7 +17,8 @@ from quadgraph.acquisition.capture import photographs
 from quadgraph.acquisition.capture.capture import Capture
 from quadgraph.acquisition.capture.photographs import Measured
 from quadgraph.acquisition.checking import import_record, lamp_check, pose_check
-from quadgraph.acquisition.checking.import_record import FoundLamp, Imported, PoseByMasks, Record
+from quadgraph.acquisition.checking.import_record import FoundLamp, Imported, Record
+from quadgraph.acquisition.pose.pose_search import PoseByMasks
 
 SAMPLES = 4000  # places of the surface
 _LEAST_BODY = 16  # pixels, as acquire wants them

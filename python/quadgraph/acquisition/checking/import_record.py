@@ -10,6 +10,7 @@ import numpy as np
 
 from quadgraph.acquisition.capture.capture import MOST_PHOTOGRAPHS
 from quadgraph.acquisition.capture.strict_json import Member
+from quadgraph.acquisition.pose.pose_search import PoseByMasks
 from quadgraph.acquisition.session import capture_writing
 from quadgraph.base import json_text
 from quadgraph.base.errors import InputError
@@ -60,29 +61,6 @@ class FoundLamp:
         return (
             f"{place} mm, to {unsure:.1f} mm; power {power} W times gain, to {relative:.1%}; other light "
             f"{self.share:.1%} of that on the board; {self.boards} photographs of it, {self.off:.1%} off"
-        )
-
-
-@dataclass(frozen=True)
-class PoseByMasks:
-    """Of the body, as `pose_search.FoundPose` has it; lowest: its lowest place over the board, mm."""
-
-    off: float
-    shared: float
-    degrees: float | None
-    mm: float | None
-    photographs: int
-    symmetric: bool
-    others: Mapping[str, float]
-    lowest: float
-
-    def line(self) -> str:
-        """How certain it is."""
-        told = "" if self.degrees is None else f", turned to {self.degrees:.2g} degrees and placed to {self.mm:.2g} mm"
-        alike = "; it looks the same turned otherwise" if self.symmetric else ""
-        return (
-            f"by {self.photographs} masks, {self.off:.2f} pixels off (RMS){told}{alike}; its lowest place is "
-            f"{self.lowest:+.2f} mm over the board"
         )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from quadgraph.acquisition.checking.import_record import PoseByMasks
+from quadgraph.acquisition.pose.pose_search import PoseByMasks
 
 _POOR_OFF = 1.0  # pixels, RMS, of outlines from the masks' edges
 _POOR_MM, _POOR_DEGREES = 0.5, 2.0  # standard deviations

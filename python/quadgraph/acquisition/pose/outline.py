@@ -102,19 +102,19 @@ class OutlinedBody:
 
     def __init__(self, vertices: np.ndarray, triangles: np.ndarray) -> None:
         """Of vertices (n, 3), mm, and triangles (m, 3). Raises InputError if rays cannot be cast."""
-        self.body = PlacedBody(vertices, triangles)
+        self.surface = PlacedBody(vertices, triangles)
         self._edges = _edges_of(triangles)
-        self._heights = np.einsum("nx,nx->n", self.body.normals, vertices[triangles[:, 0]])
+        self._heights = np.einsum("nx,nx->n", self.surface.normals, vertices[triangles[:, 0]])
 
     def outline(self, lens: Lens, pose: Pose, most: int) -> np.ndarray:
         """(n, 3) places, mm, at most `most` or so, along the outline as a camera sees it; none if it is not before it.
 
         It is where a triangle that faces the camera meets one that does not, and nothing of the body lies beside it.
         """
-        facing = self.body.normals @ pose.eye > self._heights
+        facing = self.surface.normals @ pose.eye > self._heights
         first, second = self._edges[:, 2], self._edges[:, 3]
         turns = facing[first] != (facing[second] & (second >= 0))
-        ends = self.body.vertices[self._edges[turns][:, :2]]
+        ends = self.surface.vertices[self._edges[turns][:, :2]]
         if not len(ends) or (pose.seen(ends.reshape(-1, 3))[:, 2] <= _NEAREST).any():
             return np.empty((0, 3))
         shown = project(lens, pose, ends.reshape(-1, 3)).reshape(-1, 2, 2)
@@ -138,7 +138,7 @@ class OutlinedBody:
         beside = np.zeros_like(seen)
         beside[:, :2] = _BESIDE * across * seen[:, 2:] / [lens.fx, lens.fy]
         ways = np.concatenate([seen + beside, seen - beside]) @ pose.rotation
-        met = self.body.hit(np.broadcast_to(pose.eye, ways.shape), ways)[0] >= 0
+        met = self.surface.hit(np.broadcast_to(pose.eye, ways.shape), ways)[0] >= 0
         return np.asarray(met[: len(places)] != met[len(places) :])
 
 

@@ -75,7 +75,7 @@ def shared(body: OutlinedBody, views: Sequence[MaskRays], pose: BodyPose) -> flo
     for each in views:
         ways = each.ways @ pose.rotation
         eye = (each.eye - pose.translation) @ pose.rotation
-        met = body.body.hit(np.broadcast_to(eye, ways.shape), ways)[0] >= 0
+        met = body.surface.hit(np.broadcast_to(eye, ways.shape), ways)[0] >= 0
         both += int((each.kept & met).sum())
         either += int((each.kept | met).sum())
     return both / max(either, 1)
@@ -95,7 +95,7 @@ def fit(
     camera does not see, for the body is behind it, count nothing.
     """
     pose, normal = start, np.zeros((6, 6))
-    scale, off, cost, radius = max(reach, _LEAST_SCALE), np.inf, np.inf, body.body.radius
+    scale, off, cost, radius = max(reach, _LEAST_SCALE), np.inf, np.inf, body.surface.radius
     for _ in range(steps):
         distances, rows, middle = _rows(body, silhouettes, pose, most)
         if len(distances) < 6 or not rows.any():
@@ -123,7 +123,7 @@ def _rows(
     """Distances (n,) of outlines from the masks' edges, how each changes with a step (n, 6), turns times the radius,
     and the middle that steps turn about.
     """
-    middle = pose.places(body.body.middle[None])[0]
+    middle = pose.places(body.surface.middle[None])[0]
     found, rows = [np.empty(0)], [np.empty((0, 6))]
     for each in silhouettes:
         places = pose.places(body.outline(each.lens, pose.camera(each.pose), most))
@@ -133,7 +133,7 @@ def _rows(
         distances, slopes, within = each.distances(shown)
         moves = [project(each.lens, each.pose, places + way) - shown for way in _DIFFERENCE * np.eye(3)]
         moved = np.stack([(move * slopes).sum(axis=1) / _DIFFERENCE for move in moves], axis=1)
-        turned = np.cross(places - middle, moved) / body.body.radius
+        turned = np.cross(places - middle, moved) / body.surface.radius
         found.append(distances[within])
         rows.append(np.concatenate([turned, moved], axis=1)[within])
     return np.concatenate(found), np.concatenate(rows), middle

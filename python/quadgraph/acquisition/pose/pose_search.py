@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +13,7 @@ from quadgraph.acquisition.pose.outline import OutlinedBody, Silhouette
 from quadgraph.acquisition.pose.pose_fit import BodyPose, PoseFit, fit, mask_rays, shared
 
 FLAT = 10.0  # degrees between the ways to the body, below which its distance is not told
+LEAST_MASKS = 2
 LEAST_SHARED = 0.85  # of masks and outlines, below which a pose does not fit
 _TURNS, _KEPT, _BEST = 1500, 32, 4  # poses that are looked at, that are fitted coarsely, and finely
 _COARSE_GRID, _GRID, _SHOWN = 20, 128, 6  # rays along a mask's sides, and masks that a coarse look takes
@@ -26,22 +27,40 @@ _TURNED, _COARSELY_TURNED = 0.05, 0.25  # radians, from which on two turns are n
 _UNTOLD = 6e-3  # of what a move changes the outlines, squared, below which a turn as far on the surface is none
 
 
-@dataclass(frozen=True, eq=False)
-class FoundPose:
-    """pose: of the body; off: RMS distance of its outlines from the masks' edges, pixels; shared: of masks and
+@dataclass(frozen=True)
+class PoseByMasks:
+    """How a pose was told. off: RMS distance of the body's outlines from the masks' edges, pixels; shared: of masks and
     outlines, intersection over union; degrees, mm: standard deviations of how it is turned, and of the place of its
-    middle, by leaving out each photograph in turn, None of two; photographs: by how many; symmetric: whether it looks
-    the same turned otherwise; others: what masks that were left out share with it, by their paths.
+    middle, by leaving out each photograph in turn, None of two; photographs: by how many; symmetric: whether the body
+    looks the same turned otherwise; others: what masks that were left out share with it, by their paths; lowest: its
+    lowest place over the board, mm.
     """
 
-    pose: BodyPose
     off: float
     shared: float
     degrees: float | None
     mm: float | None
     photographs: int
     symmetric: bool
-    others: dict[str, float]
+    others: Mapping[str, float]
+    lowest: float
+
+    def line(self) -> str:
+        """How certain it is."""
+        told = "" if self.degrees is None else f", turned to {self.degrees:.2g} degrees and placed to {self.mm:.2g} mm"
+        alike = "; it looks the same turned otherwise" if self.symmetric else ""
+        return (
+            f"by {self.photographs} masks, {self.off:.2f} pixels off (RMS){told}{alike}; its lowest place is "
+            f"{self.lowest:+.2f} mm over the board"
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class FoundPose:
+    """A pose, and how it was told."""
+
+    pose: BodyPose
+    told: PoseByMasks
 
 
 class PoseError(Exception):
@@ -73,7 +92,7 @@ def _fits(body: OutlinedBody, silhouettes: Sequence[Silhouette], advance: Callab
     """The best of poses all around, turned otherwise each."""
     middle = _middle_of(silhouettes)
     some = _spread(silhouettes)
-    poses = [BodyPose(turn, middle - turn @ body.body.middle) for turn in _turns()]
+    poses = [BodyPose(turn, middle - turn @ body.surface.middle) for turn in _turns()]
     rays, shares = mask_rays(some, _COARSE_GRID), []
     for number, pose in enumerate(poses):
         shares.append(shared(body, rays, pose))
@@ -87,8 +106,8 @@ def _fits(body: OutlinedBody, silhouettes: Sequence[Silhouette], advance: Callab
 
 
 def _check(silhouettes: Sequence[Silhouette]) -> None:
-    if len(silhouettes) < 2:
-        raise PoseError(f"{len(silhouettes)} photographs have a mask, allowed are 2 or more")
+    if len(silhouettes) < LEAST_MASKS:
+        raise PoseError(f"{len(silhouettes)} photographs have a mask, allowed are {LEAST_MASKS} or more")
     ways = [_way(each) for each in silhouettes]
     widest = max(float(np.degrees(np.arccos(np.clip(a @ b, -1, 1)))) for a in ways for b in ways)
     if widest < FLAT:
@@ -155,7 +174,7 @@ def _agreeing(
         fits = sorted(fits, key=lambda each: each.cost)
         shares = [shared(body, mask_rays([each], _GRID), fits[0].pose) for each in kept]
         worst = int(np.argmin(shares))
-        if shares[worst] > LEAST_SHARED or len(kept) <= max(2, len(silhouettes) / 2):
+        if shares[worst] > LEAST_SHARED or len(kept) <= max(LEAST_MASKS, len(silhouettes) / 2):
             return kept, fits, others
         others[kept.pop(worst).path] = shares[worst]
         fits = [fit(body, kept, each.pose, _PLACES, _STEPS) for each in fits]
@@ -193,23 +212,25 @@ def _judged(
         if other.cost > _ALIKE * best.cost + _ALIKE_COST:
             continue
         apart = _apart(body, best, other)
-        if apart > max(_SAME * best.off * pixel, _SAME_SHARE * body.body.radius):
+        if apart > max(_SAME * best.off * pixel, _SAME_SHARE * body.surface.radius):
             raise PoseError(
                 f"two poses fit as well, {apart:.2g} mm apart: state in `pose` about how it lies, or photograph from "
                 "more sides"
             )
         symmetric |= _turned(other, best) > _TURNED
     degrees, mm = _deviations(body, silhouettes, best) if len(silhouettes) > 2 else (None, None)
-    return FoundPose(best.pose, best.off, share, degrees, mm, len(silhouettes), symmetric, others)
+    lowest = float(best.pose.places(body.surface.vertices)[:, 2].min())
+    told = PoseByMasks(best.off, share, degrees, mm, len(silhouettes), symmetric, others, lowest)
+    return FoundPose(best.pose, told)
 
 
 def _apart(body: OutlinedBody, first: PoseFit, second: PoseFit) -> float:
     """How far, mm, the farthest hundredth of the surface in one pose is from that in another: nothing to speak of for
     a body that was turned about an axis of symmetry.
     """
-    samples, triangles = body.body.samples(_SAMPLES)
+    samples, triangles = body.surface.samples(_SAMPLES)
     here, there = first.pose.places(samples), second.pose.places(samples)
-    normals = body.body.normals[triangles] @ second.pose.rotation.T
+    normals = body.surface.normals[triangles] @ second.pose.rotation.T
     near = cKDTree(there).query(here, k=_NEAR)[1]
     beside = np.einsum("nkx,nkx->nk", here[:, None] - there[near], normals[near])
     return float(np.quantile(np.abs(beside).min(axis=1), 0.99))
@@ -218,13 +239,13 @@ def _apart(body: OutlinedBody, first: PoseFit, second: PoseFit) -> float:
 def _deviations(body: OutlinedBody, silhouettes: Sequence[Silhouette], best: PoseFit) -> tuple[float, float]:
     """Of turns, degrees, and of the middle's place, mm: the jackknife over photographs, RMS over the three axes."""
     count = len(silhouettes)
-    middle = best.pose.places(body.body.middle[None])[0]
+    middle = best.pose.places(body.surface.middle[None])[0]
     steps = np.empty((count, 6))
     for number in range(count):
         others = [each for place, each in enumerate(silhouettes) if place != number]
         pose = fit(body, others, best.pose, _PLACES // 3, _COARSE_STEPS).pose
         steps[number, :3] = Rotation.from_matrix(pose.rotation @ best.pose.rotation.T).as_rotvec()
-        steps[number, 3:] = pose.places(body.body.middle[None])[0] - middle
+        steps[number, 3:] = pose.places(body.surface.middle[None])[0] - middle
     variances = (count - 1) * steps.var(axis=0)
     return float(np.degrees(np.sqrt(variances[:3].sum() / 3))), float(np.sqrt(variances[3:].sum() / 3))
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -15,10 +16,10 @@ from quadgraph.acquisition.cameras.placed_body import PlacedBody
 from quadgraph.acquisition.capture.capture import NoiseModel
 from quadgraph.acquisition.capture.radiance import Radiance
 from quadgraph.acquisition.lighting.near_lamp import NearLamp
+from quadgraph.acquisition.pose.pose_search import FoundPose
 from quadgraph.acquisition.session import exr_writer, light_finding, resampling
 from quadgraph.acquisition.session.exposures import ShotContent
 from quadgraph.acquisition.session.locating import LocatedCamera
-from quadgraph.acquisition.session.pose_finding import PlacedByMasks
 from quadgraph.acquisition.session.session_file import Session
 from quadgraph.acquisition.session.shots import Shot
 from quadgraph.base import image_file
@@ -132,7 +133,7 @@ def record(
     cameras: dict[str, LocatedCamera],
     views: dict[str, PinholeView],
     lamps: dict[str, NearLamp],
-    place: PlacedByMasks | None,
+    place: FoundPose | None,
 ) -> dict[str, Any]:
     """What was found, for `capture check` and whoever reads it; lengths mm, places pixels of the photograph."""
     photographs = []
@@ -164,15 +165,8 @@ def record(
         else {"size": (board.size * np.array(board.printed) / RULER_MM).tolist(), "printed": list(board.printed)},
         "lamps": {name: _lamp(session, name, lamp, found, cameras) for name, lamp in lamps.items()},
         "photographs": photographs,
-        **({} if place is None else {"pose": _pose(place)}),
+        **({} if place is None else {"pose": asdict(place.told)}),
     }
-
-
-def _pose(place: PlacedByMasks) -> dict[str, Any]:
-    """A pose that masks told: how far off and how certain it is; None where two photographs told it."""
-    found = place.found
-    numbers = ("off", "shared", "degrees", "mm", "photographs", "symmetric", "others")
-    return {each: getattr(found, each) for each in numbers} | {"lowest": place.lowest}
 
 
 def _lamp(

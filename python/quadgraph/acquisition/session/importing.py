@@ -23,7 +23,8 @@ def import_session(
 ) -> dict[str, Any]:
     """Write a capture, its pictures beside it, and the record of what was found, which is returned.
 
-    Photographs are read twice, so that no more than one is in memory. Raises InputError; then no capture is written,
+    Photographs are read twice, and a third time where their masks tell the pose, so that no more than one is in memory.
+    Raises InputError; then no capture is written,
     though pictures may be.
     """
     mesh = surface(session.path, session.body, session.unit, None)
@@ -41,10 +42,11 @@ def import_session(
     masks = Masks(session, exposures)
     place = None
     if session.pose_fit:
-        all_kept = masks.all(lambda share: advance(0.6 + 0.1 * share))
-        place = pose_finding.find(session, mesh, all_kept, cameras, lambda share: advance(0.7 + 0.1 * share))
-        tell(f"pose of the body: {place.line()}")
-        session = pose_finding.placed(session, place)
+        silhouettes = masks.silhouettes(cameras, lambda share: advance(0.6 + 0.1 * share))
+        place = pose_finding.find(session, mesh, silhouettes, lambda share: advance(0.7 + 0.1 * share))
+        session = replace(session, placement=pose_finding.placement_of(place.pose))
+        for line in pose_finding.lines(session.placement, place):
+            tell(line)
     body = body_of(session, mesh)
     views, entries = {}, []
     for number, shot in enumerate(session.shots):

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
 from quadgraph import core
 from quadgraph.acquisition.capture.radiance import Radiance
+from quadgraph.acquisition.pose.outline import Silhouette, silhouette
 from quadgraph.acquisition.session import background_masks
 from quadgraph.acquisition.session.exposures import Exposures
+from quadgraph.acquisition.session.locating import LocatedCamera
 from quadgraph.acquisition.session.session_file import Session
 from quadgraph.acquisition.session.shots import Shot
 from quadgraph.base.errors import InputError
@@ -23,15 +25,20 @@ class Masks:
         self._session, self._exposures = session, exposures
         self._packed: dict[str, tuple[np.ndarray, tuple[int, ...]]] = {}
 
-    def all(self, advance: Callable[[float], None]) -> dict[str, np.ndarray]:
-        """(h, w) each, by the paths of shots that have one. Raises InputError."""
-        found = {}
+    def silhouettes(self, cameras: Mapping[str, LocatedCamera], advance: Callable[[float], None]) -> list[Silhouette]:
+        """Of all shots that have a mask. Raises InputError, also for one that keeps nothing."""
+        found = []
         for number, shot in enumerate(self._session.shots):
             advance(number / len(self._session.shots))
-            if shot.mask or shot.background:
-                kept = self.of(shot, self._exposures.merged(shot))
-                assert kept is not None
-                found[shot.path] = kept
+            if not (shot.mask or shot.background):
+                continue
+            kept, camera = self.of(shot, self._exposures.merged(shot)), cameras[shot.path]
+            made = None if kept is None else silhouette(shot.path, kept, camera.lens, camera.pose)
+            if made is None:
+                raise InputError(
+                    f"{self._session.path}: {shot.path}.mask: keeps nothing; let the body be white and all else black"
+                )
+            found.append(made)
         return found
 
     def of(self, shot: Shot, radiance: Radiance) -> np.ndarray | None:

@@ -14,6 +14,7 @@ from quadgraph.acquisition.cameras.rigid_placement import Placement
 from quadgraph.acquisition.capture import capture
 from quadgraph.acquisition.capture.capture import NoiseModel
 from quadgraph.acquisition.capture.strict_json import Member
+from quadgraph.acquisition.pose import pose_search
 from quadgraph.acquisition.session import light_statements
 from quadgraph.acquisition.session.light_statements import LampStatement, ProjectorStatement
 from quadgraph.acquisition.session.shots import Shot, read_shot
@@ -27,16 +28,15 @@ MOST_BLACK = 64
 DEFAULT_SIZE = 320  # pixels of the square pictures of a capture
 _FAR_MM = 1e6
 _PLACED = ("axis", "degrees", "translate")  # of `pose` and `world`
-_LEAST_MASKED = 2  # photographs, by whose masks a pose is told
 _LARGEST = 1e15
 
 
 @dataclass(frozen=True)
 class Session:
     """A whole session. cameras: a file or folder of another program; world: how its world becomes the board's; board:
-    None where cameras tell all; placement: of the body on the board; pose_fit: whether masks
-    tell it, pose_near: nearby what is stated; noise, saturation: of values where 1 is full
-    scale, None: estimated, and as the kind of file has it; black: exposures with the lens covered; size: pixels.
+    None where cameras tell all; placement: of the body on the board; pose_fit: whether masks tell it, pose_near: nearby
+    what is stated; noise, saturation: of values where 1 is full scale, None: estimated, and as the kind of file has it;
+    black: exposures with the lens covered; size: pixels.
     """
 
     path: Path
@@ -184,8 +184,8 @@ def _pose(member: Member | None, shots: Sequence[Shot]) -> tuple[Placement, bool
     if fit is not None and not isinstance(fit.value, bool):
         fit.wrong("allowed are true, by masks, and false")
     masked = sum(1 for shot in shots if shot.mask or shot.background)
-    if fit is not None and fit.value and masked < _LEAST_MASKED:
-        fit.wrong(f"{masked} photographs have a mask or a background, allowed are {_LEAST_MASKED} or more")
+    if fit is not None and fit.value and masked < pose_search.LEAST_MASKS:
+        fit.wrong(f"{masked} photographs have a mask or a background, allowed are {pose_search.LEAST_MASKS} or more")
     return _placement(members), bool(fit and fit.value), bool(members)
 
 

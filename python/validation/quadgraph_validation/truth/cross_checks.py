@@ -94,8 +94,7 @@ def sphere(
     """The scene `sphere`: what leaves either half, beside pmmc, and what reaches the eyes, beside path tracing.
 
     folder: of our walks, which are gone on with; pictures: of the path-traced ones; theirs: the exitance of its zones
-    by pmmc, if that was asked. Raises InputError if either is
-    stale or a picture is not there.
+    by pmmc, if that was asked. Raises InputError if either is stale or a picture is not there.
     """
     scene, zones = SCENES["sphere"], walk_truth.ZONES
     found = walk_truth.make(scene, walks, folder, console)
