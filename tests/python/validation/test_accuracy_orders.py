@@ -13,7 +13,7 @@ pytest.importorskip("quadgraph._core", reason="the compiled engine is not built:
 LINEAR_ELEMENTS = 1.9  # the least fitted order
 
 
-@pytest.mark.parametrize("case", orders_study.CASES, ids=lambda case: case.name)
+@pytest.mark.parametrize("case", orders_study.BODIES, ids=lambda case: case.name)
 def test_fem_is_of_second_order_in_both_models(case):
     record = orders_study.study(schemes.on_reference, case, 3, orders_study.FEM)
     print(record)
@@ -30,7 +30,7 @@ def test_fem_is_of_second_order_where_coefficients_vary():
 @pytest.fixture(scope="module")
 def sphere():
     return orders_study.study(
-        schemes.on_reference, orders_study.CASES[0], 2, (*orders_study.FEM, *orders_study.GRAPH_METHODS)
+        schemes.on_reference, orders_study.BODIES[0], 2, (*orders_study.FEM, *orders_study.GRAPH_METHODS)
     )["errors"]
 
 

@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 
 from quadgraph import cli
-from quadgraph.base.errors import InputError
 from quadgraph.work import finished_tasks
 from quadgraph.work.schedulers import Scheduler
 from quadgraph_validation.accuracy import row_tasks, unseen_study
@@ -79,13 +78,6 @@ def test_rows_are_made_by_their_names(here, monkeypatch):
     assert [names for _, names in here] == [["veined veins 4"]]
     assert [row["twice"] for row in record["rows"]] == [7, 8]
     assert written == [record["rows"]]
-
-
-def test_a_study_of_one_run_is_refused(capsys):
-    assert cli.main(["accuracy", "slab", "--scheduler", "processes:2"]) == 1
-    assert "--scheduler: found with slab, which is one run; allowed with unseen, " in capsys.readouterr().err
-    with pytest.raises(InputError, match="found with slab"):
-        row_tasks.check("slab", ("unseen",))
 
 
 def test_panels_are_those_that_are_solved_one_after_the_other(tmp_path):

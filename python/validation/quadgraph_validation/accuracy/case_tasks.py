@@ -16,6 +16,7 @@ from quadgraph.work.task_run import run_tasks
 from quadgraph_validation.accuracy import scenes_study
 from quadgraph_validation.accuracy.kept_rows import Row
 from quadgraph_validation.bodies import level_chains
+from quadgraph_validation.truth import schemes
 
 
 def of_bodies(study: str, device: str, meshes: Path, names: Sequence[str], scheduler: Scheduler) -> dict[str, Any]:
@@ -36,18 +37,34 @@ def body_rows(study: str, device: str, meshes: str, name: str) -> list[Row]:
 
 
 def of_cases(study: str, scheduler: Scheduler, **options: str) -> dict[str, Any]:
-    """The record of a study's `run`, its CASES, tuples of numbers, spread over workers. options: of its `rows_of`.
+    """The record of a study's `run`, its CASES, tuples of numbers and words, over workers. options: of its `rows_of`.
 
     Raises ToolError for cases that failed.
     """
+    return _of_cases(study, "case_rows", {"options": options}, scheduler)
+
+
+def of_solved_cases(study: str, device: str, reference: bool, scheduler: Scheduler) -> dict[str, Any]:
+    """As `of_cases`, of a study whose rows take bodies that are solved. device, reference: as `schemes.chosen` has
+    them.
+    """
+    return _of_cases(study, "solved_rows", {"device": device, "reference": reference}, scheduler)
+
+
+def _of_cases(study: str, function: str, given: Mapping[str, Any], scheduler: Scheduler) -> dict[str, Any]:
     module, tasks = _module(study), []
     for case in module.CASES:
-        given = {"study": study, "case": list(case), "options": options}
-        tasks.append(Task(" ".join([study, *(f"{number:g}" for number in case)]), f"{__name__}:case_rows", given))
+        name = " ".join([study, *(part if isinstance(part, str) else f"{part:g}" for part in case)])
+        tasks.append(Task(name, f"{__name__}:{function}", {"study": study, "case": list(case), **given}))
     return module.record_of(_joined(tasks, scheduler))
 
 
-def case_rows(study: str, case: Sequence[float], options: Mapping[str, str]) -> list[Row]:
+def solved_rows(study: str, case: Sequence[Any], device: str, reference: bool) -> list[Row]:
+    """The rows of a case, with bodies that are solved for it."""
+    return _module(study).rows_of(tuple(case), schemes.chosen(device, reference))
+
+
+def case_rows(study: str, case: Sequence[Any], options: Mapping[str, str]) -> list[Row]:
     """The rows of a case."""
     return _module(study).rows_of(tuple(case), **options)
 
@@ -81,4 +98,4 @@ def _joined(tasks: Sequence[Task], scheduler: Scheduler) -> list[Row]:
 
 
 def _module(study: str) -> ModuleType:
-    return importlib.import_module(f"quadgraph_validation.accuracy.{study}_study")
+    return importlib.import_module(f"quadgraph_validation.accuracy.{study.replace('-', '_')}_study")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import Any
 
 from rich.table import Table
@@ -13,29 +14,38 @@ from quadgraph_validation.truth.slab_transport import discrete_ordinates
 
 ETA = 1.3
 LAYERS = (160, 20, 10, 5, 3)
-CASES = (("marble", 0, DIFFUSION), ("marble", 0, SP3), ("skin1", 1, SP3))
+CASES = tuple(itertools.product(LAYERS))
+CELLS = (("marble", 0, DIFFUSION), ("marble", 0, SP3), ("skin1", 1, SP3))
 
 
 def run(body_of: BodyOf) -> dict[str, Any]:
     """Relative errors of R and T against exact transport, collimated light, per number of layers."""
-    rows = []
-    for layers in LAYERS:
-        body = slab_study.column(body_of, layers)
-        cells = []
-        for name, channel, scheme in CASES:
-            medium = media(name)[channel]
-            truth = discrete_ordinates(medium, slab_study.THICKNESS, ETA, lambertian=False)
-            found = slab_study.solved(body, media(name), ETA, False, scheme)[channel]
-            cells.append(
-                {
-                    "medium": f"{name} {'RGB'[channel]}",
-                    "scheme": scheme.name,
-                    "mean_free_paths": medium.sigma_t * slab_study.THICKNESS / layers,
-                    "errors": slab_study.relative_errors(found, truth),
-                }
-            )
-        rows.append({"layers": layers, "cells": cells})
+    return record_of([row for case in CASES for row in rows_of(case, body_of)])
+
+
+def record_of(rows: list[dict[str, Any]]) -> dict[str, Any]:
+    """The record of a run with these rows."""
     return {"thickness_mm": slab_study.THICKNESS, "eta": ETA, "rows": rows}
+
+
+def rows_of(case: tuple[int], body_of: BodyOf) -> list[dict[str, Any]]:
+    """Of so many layers, a cell for each medium and scheme."""
+    (layers,) = case
+    body = slab_study.column(body_of, layers)
+    cells = []
+    for name, channel, scheme in CELLS:
+        medium = media(name)[channel]
+        truth = discrete_ordinates(medium, slab_study.THICKNESS, ETA, lambertian=False)
+        found = slab_study.solved(body, media(name), ETA, False, scheme)[channel]
+        cells.append(
+            {
+                "medium": f"{name} {'RGB'[channel]}",
+                "scheme": scheme.name,
+                "mean_free_paths": medium.sigma_t * slab_study.THICKNESS / layers,
+                "errors": slab_study.relative_errors(found, truth),
+            }
+        )
+    return [{"layers": layers, "cells": cells}]
 
 
 def tables(record: dict[str, Any]) -> list[Table]:

@@ -12,14 +12,15 @@ from quadgraph_validation.bodies.media import Medium
 from quadgraph_validation.truth import closed_forms, monte_carlo
 from quadgraph_validation.truth.schemes import DIFFUSION, PUBLISHED, SP3, BodyOf, Scheme, StudyBody, StudyLight
 
-# Index, albedo, and wavelengths in mean free paths, which are 1 mm here.
-CASES = (
-    (1.3, 0.999, (np.inf, 30.0, 10.0, 5.0, 3.0, 2.0)),
-    (1.3, 0.98, (np.inf, 30.0, 10.0, 5.0, 3.0)),
-    (1.3, 0.9, (np.inf, 30.0, 10.0, 5.0, 3.0)),
-    (1.3, 0.7, (np.inf, 30.0, 10.0, 5.0)),
-    (1.0, 0.9, (np.inf, 30.0, 10.0, 5.0, 3.0)),
-)
+# Of an index and an albedo, wavelengths in mean free paths, which are 1 mm here.
+WAVELENGTHS = {
+    (1.3, 0.999): (np.inf, 30.0, 10.0, 5.0, 3.0, 2.0),
+    (1.3, 0.98): (np.inf, 30.0, 10.0, 5.0, 3.0),
+    (1.3, 0.9): (np.inf, 30.0, 10.0, 5.0, 3.0),
+    (1.3, 0.7): (np.inf, 30.0, 10.0, 5.0),
+    (1.0, 0.9): (np.inf, 30.0, 10.0, 5.0, 3.0),
+}
+CASES = tuple(WAVELENGTHS)
 ACROSS = 24  # cells along half a wavelength
 WIDEST = 30.0  # mm, of a block under uniform light
 WALKS = 1_000_000
@@ -54,31 +55,40 @@ def response(body: StudyBody, medium: Medium, eta: float, wavelength: float, sch
 
 def run(body_of: BodyOf) -> dict[str, Any]:
     """Random walks, the published condition solved exactly, and the mesh with either model."""
-    rows = []
-    for eta, albedo, wavelengths in CASES:
-        walked = monte_carlo.half_space(medium_of(albedo), eta, np.array(wavelengths), WALKS, SEED)
-        published = closed_forms.half_space_response(
-            medium_of(albedo), np.array(wavelengths), PUBLISHED.model_of, PUBLISHED.boundary(eta), buried=False
-        )
-        for index, wavelength in enumerate(wavelengths):
-            body = block(body_of, medium_of(albedo), wavelength)
-            found = {
-                scheme.model: response(body, medium_of(albedo), eta, wavelength, scheme) for scheme in (DIFFUSION, SP3)
-            }
-            rows.append(
-                {
-                    "eta": eta,
-                    "albedo": albedo,
-                    "wavelength": None if np.isinf(wavelength) else wavelength,
-                    "monte_carlo": float(walked.mean[index]),
-                    "standard_error": float(walked.error[index]),
-                    "published": float(published[index]),
-                    "diffusion": found["diffusion"][0],
-                    "sp3": found["sp3"][0],
-                    "least_exitance": min(least for _, least in found.values()),
-                }
-            )
+    return record_of([row for case in CASES for row in rows_of(case, body_of)])
+
+
+def record_of(rows: list[dict[str, Any]]) -> dict[str, Any]:
+    """The record of a run with these rows."""
     return {"walks": WALKS, "seed": SEED, "across": ACROSS, "rows": rows}
+
+
+def rows_of(case: tuple[float, float], body_of: BodyOf) -> list[dict[str, Any]]:
+    """Of an index and an albedo, one for each wavelength; walks serve them all."""
+    eta, albedo = case
+    medium, wavelengths = medium_of(albedo), np.array(WAVELENGTHS[case])
+    walked = monte_carlo.half_space(medium, eta, wavelengths, WALKS, SEED)
+    published = closed_forms.half_space_response(
+        medium, wavelengths, PUBLISHED.model_of, PUBLISHED.boundary(eta), buried=False
+    )
+    rows = []
+    for index, wavelength in enumerate(wavelengths.tolist()):
+        body = block(body_of, medium, wavelength)
+        found = {scheme.model: response(body, medium, eta, wavelength, scheme) for scheme in (DIFFUSION, SP3)}
+        rows.append(
+            {
+                "eta": eta,
+                "albedo": albedo,
+                "wavelength": None if np.isinf(wavelength) else wavelength,
+                "monte_carlo": float(walked.mean[index]),
+                "standard_error": float(walked.error[index]),
+                "published": float(published[index]),
+                "diffusion": found["diffusion"][0],
+                "sp3": found["sp3"][0],
+                "least_exitance": min(least for _, least in found.values()),
+            }
+        )
+    return rows
 
 
 def tables(record: dict[str, Any]) -> list[Table]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -25,10 +26,11 @@ DENSE = Medium(0.5, 0.01)
 FEM = (Scheme("fem", "diffuse", "diffusion"), Scheme("fem", "diffuse", "sp3"))
 FV = (Scheme("quadgraph-fv", "diffuse", "diffusion"), Scheme("quadgraph-fv", "diffuse", "sp3"))
 GRAPH_METHODS = (*FV, PUBLISHED)
+METHODS = {"fem": FEM, "graph": GRAPH_METHODS}
 
 
 @dataclass(frozen=True)
-class OrdersCase:
+class OrdersBody:
     """A body of known solution. mesh: from the number of refinements; exact: moments at points (n, 3) mm."""
 
     name: str
@@ -55,19 +57,21 @@ class OrdersCase:
         return self.form(self.shells, COEFFICIENTS, model, condition, radius, self.angle(points))[0]
 
 
-CASES = (
-    OrdersCase("sphere", (Shell(SOFT, RADIUS),), lambda n: meshes.ball(RADIUS, n), round_bodies.sphere),
-    OrdersCase(
+BODIES = (
+    OrdersBody("sphere", (Shell(SOFT, RADIUS),), lambda n: meshes.ball(RADIUS, n), round_bodies.sphere),
+    OrdersBody(
         "two-layer sphere",
         (Shell(DENSE, CORE_RADIUS), Shell(SOFT, RADIUS)),
         lambda n: meshes.two_layer_ball(CORE_RADIUS, RADIUS, n),
         round_bodies.sphere,
     ),
-    OrdersCase("cylinder", (Shell(SOFT, RADIUS),), lambda n: meshes.cylinder(RADIUS, 8 * 2**n), round_bodies.cylinder),
+    OrdersBody("cylinder", (Shell(SOFT, RADIUS),), lambda n: meshes.cylinder(RADIUS, 8 * 2**n), round_bodies.cylinder),
 )
+MANUFACTURED = ("manufactured", "fem")
+CASES = (*itertools.product((body.name for body in BODIES), METHODS), MANUFACTURED)
 
 
-def surface_error(body: StudyBody, case: OrdersCase, scheme: Scheme) -> float:
+def surface_error(body: StudyBody, case: OrdersBody, scheme: Scheme) -> float:
     """Relative area-weighted L2 error of the fluence on the open surface."""
     centre = np.concatenate([body.mesh.inner, body.centre])
     region = (np.linalg.norm(centre, axis=1) > case.shells[0].radius) * (len(case.shells) - 1)
@@ -83,8 +87,8 @@ def fitted_order(sizes: Sequence[float], errors: Sequence[float]) -> float:
     return float(np.polyfit(np.log(sizes), np.log(errors), 1)[0])
 
 
-def study(body_of: BodyOf, case: OrdersCase, refinements: int, schemes: Sequence[Scheme]) -> dict[str, Any]:
-    """Errors and fitted orders of one case over meshes of halving element size."""
+def study(body_of: BodyOf, case: OrdersBody, refinements: int, schemes: Sequence[Scheme]) -> dict[str, Any]:
+    """Errors and fitted orders of one body over meshes of halving element size."""
     bodies = [body_of(case.mesh(n)) for n in range(refinements)]
     sizes = [0.5**n for n in range(refinements)]
     errors = {scheme.name: [surface_error(body, case, scheme) for body in bodies] for scheme in schemes}
@@ -97,16 +101,26 @@ def study(body_of: BodyOf, case: OrdersCase, refinements: int, schemes: Sequence
 
 
 def run(body_of: BodyOf) -> dict[str, Any]:
-    """Every case with every scheme; the manufactured solution on the CPU, whose rows alone take a volume source.
+    """Every body with every scheme; the manufactured solution on the CPU, whose rows alone take a volume source."""
+    return record_of([row for case in CASES for row in rows_of(case, body_of)])
+
+
+def record_of(rows: list[dict[str, Any]]) -> dict[str, Any]:
+    """The record of a run with these rows."""
+    return {"eta": ETA, "cases": rows}
+
+
+def rows_of(case: tuple[str, str], body_of: BodyOf) -> list[dict[str, Any]]:
+    """Of a body and its methods.
 
     The graph methods, which do not converge and whose systems are slow to solve, do without the finest mesh.
     """
-    cases = []
-    for case in CASES:
-        refinements = 4 if case.name == "cylinder" else 3
-        cases.append(study(body_of, case, refinements, FEM))
-        cases.append(study(body_of, case, refinements - 1, GRAPH_METHODS))
-    return {"eta": ETA, "cases": [*cases, manufactured_study(3)]}
+    if case == MANUFACTURED:
+        return [manufactured_study(3)]
+    name, methods = case
+    refinements = (4 if name == "cylinder" else 3) - (methods == "graph")
+    (body,) = (one for one in BODIES if one.name == name)
+    return [study(body_of, body, refinements, METHODS[methods])]
 
 
 def manufactured_study(refinements: int) -> dict[str, Any]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from rich.table import Table
@@ -27,8 +27,7 @@ WALKS = (200_000, 400_000, 1_000_000)  # per albedo: the fewer collisions, the m
 _PER_BIN, _AZIMUTHS = 3, 4
 
 
-@dataclass(frozen=True)
-class RadianceCase:
+class RadianceCase(NamedTuple):
     """A slab `depth` mm thick and the light on it."""
 
     depth: float
@@ -94,43 +93,51 @@ def lambertian(found: Found, eta: float) -> np.ndarray:
 
 def run(body_of: BodyOf) -> dict[str, Any]:
     """Per slab, light, side and albedo: exact radiance, random walks, and relative errors of every scheme per bin."""
-    rows = []
-    for case in CASES:
-        truth = [radiance_by_angle(medium, case.depth, case.eta, case.cosine) for medium in MEDIA]
-        walks = [
-            exit_angles.slab(medium, case.depth, case.eta, case.cosine, count, seed=1)
-            for medium, count in zip(MEDIA, WALKS, strict=True)
-        ]
-        fine = column(body_of, case.depth, FINE)
-        found = {
-            "diffusion": gathered(fine, case, DIFFUSION),
-            "SP3": gathered(fine, case, SP3),
-            "SP3, coarse": gathered(column(body_of, case.depth, COARSE), case, SP3),
-        }
-        for channel, albedo in enumerate(ALBEDOS):
-            estimates = walks[channel].lit, walks[channel].unlit
-            for side, name in enumerate(SIDES):
-                exact = truth[channel][side]
-                exitance = np.pi * BIN_AREA @ exact
-                rows.append(
-                    {
-                        "depth": case.depth,
-                        "eta": case.eta,
-                        "cosine": case.cosine,
-                        "side": name,
-                        "albedo": albedo,
-                        "exitance": float(exitance),
-                        "radiance": exact.tolist(),
-                        "walks": (estimates[side].mean / exact - 1).tolist(),
-                        "walks_error": (estimates[side].error / exact).tolist(),
-                        "errors": _errors(found, side, channel, case.eta, exact),
-                        "exitance_error": {
-                            key: float(sides[side].exitance[channel] / exitance - 1) for key, sides in found.items()
-                        },
-                        "integral": {key: float(sides[side].integral[channel] - 1) for key, sides in found.items()},
-                    }
-                )
+    return record_of([row for case in CASES for row in rows_of(case, body_of)])
+
+
+def record_of(rows: list[dict[str, Any]]) -> dict[str, Any]:
+    """The record of a run with these rows."""
     return {"albedos": ALBEDOS, "layers_per_mean_free_path": [FINE, COARSE], "walks": WALKS, "rows": rows}
+
+
+def rows_of(numbers: tuple[float, float, float], body_of: BodyOf) -> list[dict[str, Any]]:
+    """Of a case by its numbers, one for each albedo and side."""
+    case = RadianceCase(*numbers)
+    truth = [radiance_by_angle(medium, case.depth, case.eta, case.cosine) for medium in MEDIA]
+    walks = [
+        exit_angles.slab(medium, case.depth, case.eta, case.cosine, count, seed=1)
+        for medium, count in zip(MEDIA, WALKS, strict=True)
+    ]
+    fine = column(body_of, case.depth, FINE)
+    found = {
+        "diffusion": gathered(fine, case, DIFFUSION),
+        "SP3": gathered(fine, case, SP3),
+        "SP3, coarse": gathered(column(body_of, case.depth, COARSE), case, SP3),
+    }
+    rows = []
+    for channel, albedo in enumerate(ALBEDOS):
+        estimates = walks[channel].lit, walks[channel].unlit
+        for side, name in enumerate(SIDES):
+            exact = truth[channel][side]
+            exitance = np.pi * BIN_AREA @ exact
+            rows.append(
+                {
+                    **case._asdict(),
+                    "side": name,
+                    "albedo": albedo,
+                    "exitance": float(exitance),
+                    "radiance": exact.tolist(),
+                    "walks": (estimates[side].mean / exact - 1).tolist(),
+                    "walks_error": (estimates[side].error / exact).tolist(),
+                    "errors": _errors(found, side, channel, case.eta, exact),
+                    "exitance_error": {
+                        key: float(sides[side].exitance[channel] / exitance - 1) for key, sides in found.items()
+                    },
+                    "integral": {key: float(sides[side].integral[channel] - 1) for key, sides in found.items()},
+                }
+            )
+    return rows
 
 
 def _errors(

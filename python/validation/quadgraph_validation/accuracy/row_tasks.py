@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 from quadgraph.base.cache_folder import cache_folder
-from quadgraph.base.errors import InputError
 from quadgraph.work.finished_tasks import LEDGER
 from quadgraph.work.schedulers import Scheduler
 from quadgraph.work.task import Task
@@ -64,9 +63,3 @@ def unseen_row(wanted: Mapping[str, Any]) -> Row:
 
 def _say_nothing(what: str, walks: int) -> None:
     """Nobody reads along where a task runs."""
-
-
-def check(study: str, allowed: Sequence[str]) -> None:
-    """Raise InputError for a study that is no many cases."""
-    if study not in allowed:
-        raise InputError(f"--scheduler: found with {study}, which is one run; allowed with {', '.join(allowed)}")

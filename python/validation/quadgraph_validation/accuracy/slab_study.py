@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,9 @@ from quadgraph_validation.truth.slab_transport import SlabLight, discrete_ordina
 THICKNESS = 5.0  # mm
 LAYERS = 40  # of elements
 SCHEMES = (PUBLISHED, DIFFUSION, SP3)
+ETAS = (1.0, 1.3)
+LIGHTS = ("collimated", "Lambertian")
+CASES = tuple(itertools.product(NAMES))
 
 
 def column(body_of: BodyOf, layers: int = LAYERS) -> StudyBody:
@@ -42,28 +46,38 @@ def relative_errors(found: SlabLight, truth: SlabLight) -> list[float]:
 
 def run(body_of: BodyOf) -> dict[str, Any]:
     """Truth and relative errors of R and T for every medium, channel, index and light."""
+    return record_of([row for case in CASES for row in rows_of(case, body_of)])
+
+
+def record_of(rows: list[dict[str, Any]]) -> dict[str, Any]:
+    """The record of a run with these rows."""
+    return {"thickness_mm": THICKNESS, "layers": LAYERS, "rows": rows}
+
+
+def rows_of(case: tuple[str], body_of: BodyOf) -> list[dict[str, Any]]:
+    """Of a medium, one for each index, light and channel."""
+    (name,) = case
     body = column(body_of)
     rows = []
-    for name in NAMES:
-        for eta in (1.0, 1.3):
-            for lambertian in (False, True):
-                found = {scheme: solved(body, media(name), eta, lambertian, scheme) for scheme in SCHEMES}
-                for index, medium in enumerate(media(name)):
-                    truth = discrete_ordinates(medium, THICKNESS, eta, lambertian)
-                    errors = {"closed": relative_errors(_published(medium, eta), truth)}
-                    errors |= {scheme.name: relative_errors(found[scheme][index], truth) for scheme in SCHEMES}
-                    rows.append(
-                        {
-                            "medium": f"{name} {CHANNELS[index]}",
-                            "albedo": medium.albedo,
-                            "eta": eta,
-                            "light": "Lambertian" if lambertian else "collimated",
-                            "reflectance": truth.reflectance,
-                            "transmittance": truth.transmittance,
-                            "errors": errors,
-                        }
-                    )
-    return {"thickness_mm": THICKNESS, "layers": LAYERS, "rows": rows}
+    for eta, light in itertools.product(ETAS, LIGHTS):
+        lambertian = light == "Lambertian"
+        found = {scheme: solved(body, media(name), eta, lambertian, scheme) for scheme in SCHEMES}
+        for index, medium in enumerate(media(name)):
+            truth = discrete_ordinates(medium, THICKNESS, eta, lambertian)
+            errors = {"closed": relative_errors(_published(medium, eta), truth)}
+            errors |= {scheme.name: relative_errors(found[scheme][index], truth) for scheme in SCHEMES}
+            rows.append(
+                {
+                    "medium": f"{name} {CHANNELS[index]}",
+                    "albedo": medium.albedo,
+                    "eta": eta,
+                    "light": light,
+                    "reflectance": truth.reflectance,
+                    "transmittance": truth.transmittance,
+                    "errors": errors,
+                }
+            )
+    return rows
 
 
 def _published(medium: Medium, eta: float) -> SlabLight:
@@ -79,21 +93,20 @@ def closed(medium: Medium, eta: float, lambertian: bool, scheme: Scheme) -> Slab
 def tables(record: dict[str, Any]) -> list[Table]:
     """One table per index and light."""
     result = []
-    for eta in (1.0, 1.3):
-        for light in ("collimated", "Lambertian"):
-            table = Table(
-                *("medium", "albedo", "R", "T", "published, exact", PUBLISHED.method, "diffusion", "SP3"),
-                title=f"slab, {record['thickness_mm']:g} mm, eta {eta:g}, {light}: error of R, T in %",
-            )
-            for row in record["rows"]:
-                if (row["eta"], row["light"]) == (eta, light):
-                    errors = (f"{100 * r:+.2f} {100 * t:+.2f}" for r, t in row["errors"].values())
-                    table.add_row(
-                        row["medium"],
-                        f"{row['albedo']:.3f}",
-                        f"{row['reflectance']:.5f}",
-                        f"{row['transmittance']:.5f}",
-                        *errors,
-                    )
-            result.append(table)
+    for eta, light in itertools.product(ETAS, LIGHTS):
+        table = Table(
+            *("medium", "albedo", "R", "T", "published, exact", PUBLISHED.method, "diffusion", "SP3"),
+            title=f"slab, {record['thickness_mm']:g} mm, eta {eta:g}, {light}: error of R, T in %",
+        )
+        for row in record["rows"]:
+            if (row["eta"], row["light"]) == (eta, light):
+                errors = (f"{100 * r:+.2f} {100 * t:+.2f}" for r, t in row["errors"].values())
+                table.add_row(
+                    row["medium"],
+                    f"{row['albedo']:.3f}",
+                    f"{row['reflectance']:.5f}",
+                    f"{row['transmittance']:.5f}",
+                    *errors,
+                )
+        result.append(table)
     return result

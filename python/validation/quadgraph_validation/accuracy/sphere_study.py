@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,7 @@ from quadgraph_validation.truth.schemes import DIFFUSION, PUBLISHED, SP3, BodyOf
 RADIUS = 10.0  # mm
 MEDIUM = Medium(2.0, 0.01)
 INDICES = (1.0, 1.3)
+CASES = tuple(itertools.product(INDICES))
 ZONES = 20  # of equal cos(theta), theta from the direction that the light comes from
 WALKS = 4_000_000
 SEED = 1
@@ -73,27 +75,33 @@ def halves(found: np.ndarray, truth: np.ndarray) -> tuple[float, float]:
 
 def run(body_of: BodyOf) -> dict[str, Any]:
     """Profiles of every scheme on every mesh, beside random walks and the published model solved exactly."""
-    bodies = [body_of(meshes.ball(RADIUS, n)) for n in REFINEMENTS]
-    rows = []
-    for eta in INDICES:
-        truth = monte_carlo.sphere(MEDIUM, RADIUS, eta, ZONES, WALKS, SEED)
-        profiles = [("published, exact", 0, published(eta))]
-        profiles += [
-            (scheme.name, len(body.mesh.vertices), exitance(body, eta, scheme)) for body in bodies for scheme in SCHEMES
-        ]
-        rows.append(
-            {
-                "eta": eta,
-                "monte_carlo": truth.mean.tolist(),
-                "standard_error": truth.error.tolist(),
-                "noise": halves(truth.mean + truth.error, truth.mean),
-                "profiles": [
-                    {"scheme": name, "vertices": count, "exitance": values.tolist(), "rms": halves(values, truth.mean)}
-                    for name, count, values in profiles
-                ],
-            }
-        )
+    return record_of([row for case in CASES for row in rows_of(case, body_of)])
+
+
+def record_of(rows: list[dict[str, Any]]) -> dict[str, Any]:
+    """The record of a run with these rows."""
     return {"radius_mm": RADIUS, "walks": WALKS, "seed": SEED, "rows": rows}
+
+
+def rows_of(case: tuple[float], body_of: BodyOf) -> list[dict[str, Any]]:
+    """Of an index."""
+    (eta,) = case
+    truth = monte_carlo.sphere(MEDIUM, RADIUS, eta, ZONES, WALKS, SEED)
+    profiles = [("published, exact", 0, published(eta))]
+    for body in (body_of(meshes.ball(RADIUS, n)) for n in REFINEMENTS):
+        profiles += [(scheme.name, len(body.mesh.vertices), exitance(body, eta, scheme)) for scheme in SCHEMES]
+    return [
+        {
+            "eta": eta,
+            "monte_carlo": truth.mean.tolist(),
+            "standard_error": truth.error.tolist(),
+            "noise": halves(truth.mean + truth.error, truth.mean),
+            "profiles": [
+                {"scheme": name, "vertices": count, "exitance": values.tolist(), "rms": halves(values, truth.mean)}
+                for name, count, values in profiles
+            ],
+        }
+    ]
 
 
 def tables(record: dict[str, Any]) -> list[Table]:

@@ -74,8 +74,7 @@ ON_ENGINE = {
 # Studies whose cases have names.
 _BY_ROWS = ("acquire", "certificate", "converging", "dense", "light", "pictures", "veined", "volume")
 _BY_BODIES = ("estimate", "target", "budget")  # whose bodies have names
-_BY_NUMBERS = ("forward", "similarity", "cutoff")  # whose cases are numbers
-_BY_CASES = ("unseen", "scenes", *_BY_ROWS, *_BY_BODIES, *_BY_NUMBERS)  # whose cases are independent
+_BY_WALKS = ("similarity", "cutoff")  # which solve nothing
 
 _UNSEEN_WALKS, _ACQUIRE_WALKS, _VEINED_WALKS, _PICTURE_WALKS = 2_000_000, 8192, 20_000, 2000
 _CERTIFICATE_S, _CONVERGING_S = 15.0, 120.0
@@ -97,7 +96,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--device", default="", metavar="NAME", help="cpu, or part of a Vulkan device's name; default: a GPU, else cpu"
     )
-    add_scheduler_argument(parser, f"the cases of {', '.join(_BY_CASES)}")
+    add_scheduler_argument(parser, "the cases of a study")
     of_names = f"scenes, {', '.join(_BY_BODIES)}; {', '.join(_BY_ROWS)} take --scene"
     _add_bodies_options(parser.add_argument_group(of_names))
     _add_scenes_options(parser.add_argument_group("scenes, unseen"))
@@ -193,27 +192,15 @@ def _add_motion_options(group: argparse._ArgumentGroup) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Run one study; 0 on success."""
-    from quadgraph_validation.truth import schemes
-
     load_core()
     outputs.check_outputs([args.json], [])
-    if args.scheduler:
-        from quadgraph_validation.accuracy import row_tasks
-
-        row_tasks.check(args.study, _BY_CASES)
     study = importlib.import_module(f"quadgraph_validation.accuracy.{STUDIES[args.study]}_study")
     if args.study in ON_ENGINE:
         if args.reference:
             raise InputError(f"{args.study}: --reference found, but only the engine {ON_ENGINE[args.study]}")
         record = _run_on_engine(study, args)
-    elif args.scheduler:
-        from quadgraph_validation.accuracy import case_tasks
-
-        record = case_tasks.of_cases(args.study, args.scheduler)
     else:
-        body_of = schemes.on_reference if args.reference else schemes.on_engine(args.device)
-        with Console(stderr=True).status(f"study: {args.study}"):
-            record = study.run(body_of)
+        record = _run_on_either(study, args)
     console = Console(highlight=False)
     console.width = max(console.width, _TABLE_WIDTH if args.study in _WIDE else 0)
     for table in study.tables(record):
@@ -225,6 +212,25 @@ def run(args: argparse.Namespace) -> int:
 
 def _write(args: argparse.Namespace, record: dict) -> None:
     atomic_file.write_json(args.json, {"study": args.study, "commit": commit()} | record)
+
+
+def _run_on_either(study: ModuleType, args: argparse.Namespace) -> dict:
+    """Run a study that the engine or its reference solves, or that takes neither.
+
+    Linear algebra of truths has one thread, as it has in tasks: its sums depend on how many it has.
+    """
+    from threadpoolctl import threadpool_limits
+
+    from quadgraph_validation.accuracy import case_tasks
+    from quadgraph_validation.truth import schemes
+
+    with threadpool_limits(1, "blas"):
+        if args.scheduler and args.study in _BY_WALKS:
+            return case_tasks.of_cases(args.study, args.scheduler)
+        if args.scheduler:
+            return case_tasks.of_solved_cases(args.study, args.device, args.reference, args.scheduler)
+        with Console(stderr=True).status(f"study: {args.study}"):
+            return study.run(schemes.chosen(args.device, args.reference))
 
 
 def _run_on_engine(study: ModuleType, args: argparse.Namespace) -> dict:
@@ -260,7 +266,7 @@ def _run_on_engine(study: ModuleType, args: argparse.Namespace) -> dict:
     if args.scheduler:
         from quadgraph_validation.accuracy import case_tasks
 
-        if args.study in _BY_NUMBERS:
+        if args.study == "forward":
             return case_tasks.of_cases(args.study, args.scheduler, device=args.device)
         return case_tasks.of_bodies(args.study, args.device, args.meshes, args.scene, args.scheduler)
     with Console(stderr=True).status(f"study: {args.study}"):

@@ -107,6 +107,11 @@ class StudyBody:
 BodyOf = Callable[[Graph], StudyBody]
 
 
+def chosen(device: str, reference: bool) -> BodyOf:
+    """Bodies of the reference, or of the engine on a device."""
+    return on_reference if reference else on_engine(device)
+
+
 def on_reference(mesh: Graph) -> StudyBody:
     """A body that the CPU reference solves, in double precision."""
     core = load_core()
