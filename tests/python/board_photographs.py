@@ -125,4 +125,5 @@ def write_png(path: Path, picture: np.ndarray) -> None:
     """Write (h, w, 3) uint16."""
     import cv2
 
-    assert cv2.imwrite(str(path), np.ascontiguousarray(picture[..., ::-1]))
+    as_it_is = [cv2.IMWRITE_PNG_COMPRESSION, 0]  # noise becomes no smaller, and takes longer to write and to read
+    assert cv2.imwrite(str(path), np.ascontiguousarray(picture[..., ::-1]), as_it_is)

@@ -80,6 +80,13 @@ def test_a_volume_is_known_by_its_content(twin, tmp_path):
     assert all(np.array_equal(a["radiance"], b["radiance"]) for a, b in zip(first, found, strict=True))
 
 
+def test_without_a_correction_there_is_nothing_to_spread(twin, tmp_path, capsys):
+    asked = ["acquire", str(twin / "capture.json"), "-o", str(tmp_path / "plain.npz"), "--device", "cpu"]
+    assert main([*asked, "--no-correction", "--scheduler", "processes:2"]) == 1
+    assert "one whose predictions are corrected" in capsys.readouterr().err
+
+
+@pytest.mark.long
 def test_coefficients_are_recovered_by_workers(twin, tmp_path, capsys):
     asked = ["acquire", str(twin / "capture.json"), "--device", "cpu"]
     found = {}
@@ -90,5 +97,3 @@ def test_coefficients_are_recovered_by_workers(twin, tmp_path, capsys):
     assert "2 workers on this machine" in capsys.readouterr().err
     for name, values in found["here"].items():
         np.testing.assert_allclose(found["spread"][name], values, rtol=0.01)
-    assert main([*asked, "-o", str(tmp_path / "plain.npz"), "--no-correction", "--scheduler", "processes:2"]) == 1
-    assert "one whose predictions are corrected" in capsys.readouterr().err

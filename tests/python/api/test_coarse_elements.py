@@ -72,6 +72,7 @@ def test_sweeps_go_on_while_they_settle_slowly(tmp_path):
     assert second.change.unlit > 0.05 * first.change.unlit
 
 
+@pytest.mark.long
 def test_the_error_that_is_stated_is_that_of_means_over_patches(engine):
     """Samples of another seed change them by about the noise that the model's error has, not by that of vertices."""
     engine.material, engine.lights = medium(0.999, 1.0), ["ambient:1"]

@@ -222,14 +222,13 @@ def test_walks_that_certify_a_solve_know_the_index_of_each_body(baked):
         assert certificate.unlit.error < 0.06 + 2 * certificate.unlit.error_noise
 
 
-@pytest.mark.parametrize("way", ["sp3", "corrected"])
-def test_devices_agree(baked, way):
+def test_devices_agree(baked):
     found = {}
     for device in ("cpu", "llvmpipe"):
         with Engine(baked["near"], device=device) as engine:
             engine.materials = {"left": LOW, "right": HIGH}
-            engine.lights = LIGHTS
-            engine.solve(**WAYS[way])
+            engine.lights = LIGHTS[:1]
+            engine.solve(model="sp3", sweeps=1, sweep_points=300)
             picture = engine.render(width=48, height=32)
             found[device] = np.asarray(engine.surface().exitance), picture.scattered, picture.specular
     for of_cpu, other in zip(*found.values(), strict=True):
