@@ -186,9 +186,22 @@ void SceneFile::set(const std::string& pointer, const std::string& value) {
   check_json(value);
   const Json read = Json::parse(value, nullptr, false);
   SceneFile changed = *this;
+  changed.leave_out_tracks_of(pointer);
   put(changed.document_, pointer, read.is_discarded() ? Json(value) : read);
   changed.check();
   *this = std::move(changed);
+}
+
+// Tracks of the value at `pointer`, which would take its place in every frame.
+void SceneFile::leave_out_tracks_of(const std::string& pointer) {
+  for (std::size_t k = tracks_.size(); k-- > 0;) {
+    const std::string& target = tracks_[k].target();
+    if (target == pointer) document_["tracks"].erase(k);
+    if (pointer.starts_with(target + "/")) {
+      throw InputError(pointer + ": a track changes all of " + target + ", in every frame; change it there, at /tracks/" +
+                       std::to_string(k));
+    }
+  }
 }
 
 Scene SceneFile::at(double frame) const {

@@ -30,8 +30,9 @@ class SceneFile {
   // One that does not change.
   explicit SceneFile(const Scene& scene);
 
-  // `value`, JSON, in place of what is at `pointer`, or as a new member; a text that is not JSON counts as a string.
-  // Throws InputError, and changes nothing, where the scene would be wrong.
+  // `value`, JSON, in place of what is at `pointer`, or as a new member; a text that is not JSON counts as a string. A
+  // track that changes this value is left out. Throws InputError, and changes nothing, where the scene would be wrong,
+  // or a track changes all of what the value is part of.
   void set(const std::string& pointer, const std::string& value);
 
   std::uint32_t frames() const { return frames_; }
@@ -47,6 +48,7 @@ class SceneFile {
  private:
   SceneFile(Json document, std::filesystem::path path);
 
+  void leave_out_tracks_of(const std::string& pointer);
   void check();
   void check_keys() const;
   Scene shown(Json document) const;

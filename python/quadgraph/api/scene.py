@@ -126,9 +126,10 @@ class SceneFile:
         return replace(scene, deformation=self._scene.deformation) if self._scene else scene
 
     def set(self, pointer: str, value: object) -> None:
-        """Put a value at a JSON pointer, e.g. set("/camera/fov", 40).
+        """Put a value at a JSON pointer, e.g. set("/camera/fov", 40); a track that changes it is left out.
 
-        Raises InputError, and changes nothing, for what is not allowed, and for a deformation by shapes in memory.
+        Raises InputError, and changes nothing, for what is not allowed, for a part of what a track changes as a whole,
+        and for a deformation by shapes in memory.
         """
         if self._scene and pointer.startswith("/deformation"):
             self._scene.to_dict()

@@ -214,6 +214,22 @@ TEST_CASE("a value is set where it belongs, or nothing is") {
   }
 }
 
+TEST_CASE("a track that changes what is set is left out, and others go on") {
+  const Folder folder;
+  SceneFile file = folder.scene(R"({"body": "a.qgraph", "lights": [{"type": "ambient", "irradiance": 1}], "tracks": [
+      {"path": "/camera/fov", "keys": [[0, 20], [9, 60]]}, {"path": "/camera/azimuth", "keys": [[0, 0], [9, 90]]},
+      {"path": "/camera/fov", "keys": [[0, 10], [9, 90]]},
+      {"path": "/lights/0/irradiance", "keys": [[0, [1, 2, 3]], [9, [3, 2, 1]]]}]})");
+  file.set("/camera/fov", "40");
+  for (const double frame : {0.0, 9.0}) {
+    CHECK(file.at(frame).view.vertical_fov == 40);
+    CHECK(file.at(frame).view.azimuth == doctest::Approx(10 * frame));
+  }
+  const Scene before = file.at(9);
+  CHECK(refusal([&] { file.set("/lights/0/irradiance/1", "5"); }).find("at /tracks/1") != std::string::npos);
+  CHECK(file.at(9) == before);
+}
+
 TEST_CASE("bad scenes: the path into the file, what was found, what is allowed") {
   check_refused("{\"body\":\n \"a\",\n ]", "no JSON at line 3, column 2");
   check_refused("[]", "/: found [], allowed is an object of");

@@ -50,6 +50,7 @@ def off(report: dict[str, Any], name: str) -> tuple[np.ndarray, np.ndarray]:
     return found / true - 1, np.log(found / true) / report["deviations_of_logarithms"][name]
 
 
+@pytest.mark.long
 def test_predictions_of_what_absorbs_much_change_smoothly(twin):
     """In all pixels that count: one that jumps makes the derivatives of a fit large, and its deviations small."""
     stated = capture.read(twin / "capture.json")

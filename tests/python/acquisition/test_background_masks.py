@@ -126,6 +126,7 @@ def session(tmp_path_factory) -> Path:
     return folder
 
 
+@pytest.mark.long
 def test_the_mask_shows_where_the_body_is_and_not_where_it_is_stated(session):
     cameras = json.loads((session / "capture.json").read_text())["cameras"]
     stated = board_session.MIDDLE + np.array([12.0, 0, 0])

@@ -286,6 +286,7 @@ def test_a_bake_killed_while_writing_leaves_no_output_file(sphere, tmp_path):
     assert not output.exists()
 
 
+@pytest.mark.long
 def test_bunny_within_its_budget_of_memory(bunny_path, tmp_path):
     # In a process whose parent is small: Linux counts a process's peak from that of the one it was started by.
     command = [sys.executable, "-m", "quadgraph.cli", "bake", bunny_path, "-o", tmp_path / "bunny.qgraph"]

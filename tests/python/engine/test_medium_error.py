@@ -86,6 +86,7 @@ def test_what_is_said_is_what_another_sample_changes(engine, ball):
     assert 0.6 < told / changed < 1.6
 
 
+@pytest.mark.long
 def test_functions_and_grids_are_judged_alike(body, engine):
     fill(engine, True)
     known = engine.solve(correction=True)["mesh_error"]["whole"]

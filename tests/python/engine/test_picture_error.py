@@ -65,6 +65,7 @@ def test_the_more_radiance_depends_on_the_angle_the_less_certain_it_is(engine):
     assert stated[1] > 2 * stated[0]
 
 
+@pytest.mark.long
 def test_more_samples_of_a_pixel_leave_the_error_as_it_is(engine):
     engine.solve(**QUICK)
     for elevation in (LIT, UNLIT, 0.0):

@@ -66,7 +66,7 @@ def pairs() -> list:
     return found
 
 
-@pytest.mark.parametrize("light", LIGHTS)
+@pytest.mark.parametrize("light", ["sun", pytest.param("sky", marks=pytest.mark.long)])
 @pytest.mark.parametrize(("ball", "other"), pairs())
 def test_two_bodies_give_what_walks_say(pair, ball, other, light):
     path, surface, body = pair

@@ -69,6 +69,7 @@ def test_the_picture_that_is_judged_is_the_one_that_was_timed(body, monkeypatch)
     assert first[40:42, 60].mean() == pytest.approx(whole[80:84, 120:122].mean(), rel=1e-9)
 
 
+@pytest.mark.long
 def test_a_smaller_error_takes_more_solves_and_is_stated(converged):
     told = {asked: stated for asked, (stated, _) in converged.items()}
     for asked, stated in told.items():
@@ -83,6 +84,7 @@ def test_a_smaller_error_takes_more_solves_and_is_stated(converged):
     assert solves[0.015] > solves[0.2] == 1
 
 
+@pytest.mark.long
 def test_pictures_to_two_errors_differ_by_no_more_than_both_state(converged, body):
     coarse, fine = (picture for _, picture in converged.values())
     inside = body.coverage("A") > 0.999

@@ -43,6 +43,7 @@ def test_the_front_holds_exactly_what_nothing_beats():
         assert len(front(points)) == len(found)
 
 
+@pytest.mark.long
 def test_a_record_is_drawn_again_the_same_to_the_byte_without_a_device(drawn, record_path, tmp_path, monkeypatch):
     again = tmp_path / "again"
     monkeypatch.setitem(sys.modules, "quadgraph._core", None)

@@ -144,6 +144,7 @@ def zone_means(body: ChartBody, exitance: np.ndarray) -> np.ndarray:
     return np.bincount(zone, area * exitance[:, 0]) / np.bincount(zone, area)
 
 
+@pytest.mark.long
 def test_corrections_come_close_to_random_walks_where_the_model_does_not(ball):
     body = ChartBody(KETCHUP_BALL, ball, ball.parent, "", 32)
     known = {method.name: method for method in engine_methods(body.chain)}

@@ -72,6 +72,7 @@ def test_what_is_solved_anew_each_frame_is_steady_and_one_cycle_nearly(body):
         assert abs(found["lag"]["camera"]["frames"]) < bound
 
 
+@pytest.mark.long
 def test_corrections_in_motion_flicker_more_than_what_has_no_noise(body):
     course = motion_measure.MotionCourse(body)
     moving = course.steadiness(EngineMethod(sweeps=1, cycles=1, motion=True))
