@@ -198,8 +198,8 @@ void SceneFile::leave_out_tracks_of(const std::string& pointer) {
     const std::string& target = tracks_[k].target();
     if (target == pointer) document_["tracks"].erase(k);
     if (pointer.starts_with(target + "/")) {
-      throw InputError(pointer + ": a track changes all of " + target + ", in every frame; change it there, at /tracks/" +
-                       std::to_string(k));
+      throw InputError(pointer + ": a track changes all of " + target +
+                       ", in every frame; change it there, at /tracks/" + std::to_string(k));
     }
   }
 }

@@ -40,7 +40,7 @@ def on_this_machine(count: int, memory: int, threads: int, tell: ProgressCallbac
     afterwards.
     """
     distributed, dask = optional_package("distributed", EXTRA), optional_package("dask", EXTRA)
-    settings = {"distributed.scheduler.allowed-failures": _FAILURES}
+    settings = {"distributed.scheduler.allowed-failures": _FAILURES, "distributed.scheduler.worker-saturation": 1.0}
     with ExitStack() as stack:
         stack.enter_context(_quiet())
         stack.enter_context(dask.config.set(settings))
@@ -182,9 +182,15 @@ class DaskWorkers:
                 yield names[future.key], future.result()
 
     @staticmethod
-    def _name(key: str, order: str) -> str:
-        """What the dashboard shows up to the last hyphen; hyphens within would end it sooner."""
-        return f"{json.loads(order)['name'].replace('-', _HYPHEN)}-{key[:_KEY]}"
+    def _name(key: str, order: str) -> tuple[str, str]:
+        """The key that Dask knows a task by: of which kind it is, and which of them.
+
+        Of one kind Dask expects that they take equally long, and has them wait at the scheduler for the next worker
+        that is free; others it hands out at once, and moves them by guesses that leave workers without work. The
+        dashboard shows a kind up to a hyphen.
+        """
+        name = str(json.loads(order)["name"])
+        return name.partition(" ")[0].strip(",").replace("-", _HYPHEN), f"{name}-{key[:_KEY]}"
 
 
 def _first_line(error: Any) -> str:

@@ -54,7 +54,16 @@ def test_results_are_those_of_own_processes(cluster, address, tmp_path, monkeypa
 def test_the_dashboard_shows_names_for_people(cluster, tmp_path):
     list(cluster.outcomes(orders_of(task_examples.notes(tmp_path, 1), tmp_path / "ledger")))
     known = cluster._client.run_on_scheduler(lambda dask_scheduler: list(dask_scheduler.task_prefixes))
-    assert "note\N{NON-BREAKING HYPHEN}of 0" in known
+    assert "note\N{NON-BREAKING HYPHEN}of" in known
+
+
+def test_tasks_wait_at_the_scheduler_for_whoever_is_free(cluster, tmp_path):
+    """A worker that has been handed all that is left leaves the others without work."""
+    outcomes = cluster.outcomes(orders_of(task_examples.notes(tmp_path, 9, 0.2), tmp_path / "ledger"))
+    for _ in range(4):
+        next(outcomes)
+        assert max(len(tasks) for tasks in cluster._client.processing().values()) == 1
+    assert len(list(outcomes)) == 5
 
 
 def test_a_worker_that_is_killed_loses_nothing(cluster, tmp_path):
