@@ -157,7 +157,7 @@ def _replaced(track: str, wanted: dict[str, Any]) -> bool:
         if track == pointer or track.startswith(f"{pointer}/"):
             return True
         if pointer.startswith(f"{track}/"):
-            raise InputError(f"a track of the scene changes all of {track}: change it there, or with --set")
+            raise InputError(f"a track of the scene changes all of {track}: change it there")
     return False
 
 

@@ -215,22 +215,19 @@ def _write(args: argparse.Namespace, record: dict) -> None:
 
 
 def _run_on_either(study: ModuleType, args: argparse.Namespace) -> dict:
-    """Run a study that the engine or its reference solves, or that takes neither.
-
-    Linear algebra of truths has one thread, as it has in tasks: its sums depend on how many it has.
-    """
+    """Run a study that the engine or its reference solves, or that takes neither."""
     from threadpoolctl import threadpool_limits
 
     from quadgraph_validation.accuracy import case_tasks
     from quadgraph_validation.truth import schemes
 
-    with threadpool_limits(1, "blas"):
-        if args.scheduler and args.study in _BY_WALKS:
-            return case_tasks.of_cases(args.study, args.scheduler)
-        if args.scheduler:
-            return case_tasks.of_solved_cases(args.study, args.device, args.reference, args.scheduler)
-        with Console(stderr=True).status(f"study: {args.study}"):
-            return study.run(schemes.chosen(args.device, args.reference))
+    if args.scheduler and args.study in _BY_WALKS:
+        return case_tasks.of_cases(args.study, args.scheduler)
+    if args.scheduler:
+        return case_tasks.of_solved_cases(args.study, args.device, args.reference, args.scheduler)
+    # Sums of linear algebra depend on how many threads it has; in tasks it has one, too.
+    with threadpool_limits(1, "blas"), Console(stderr=True).status(f"study: {args.study}"):
+        return study.run(schemes.chosen(args.device, args.reference))
 
 
 def _run_on_engine(study: ModuleType, args: argparse.Namespace) -> dict:
