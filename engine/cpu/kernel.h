@@ -152,22 +152,18 @@ void run_fragments(const void* push, bool front, const float* inputs, const floa
                  : run_groups<Shader<1>>(push, groups, begin, end, grouped);                                \
   }
 
-#define QG_VERT_KERNEL(name)                                                                                     \
-  void QG_NAMED(name, MOMENTS, kernel)(const void* push, const uint* vertices, uint count, float* results,       \
-                                       uint variant) {                                                           \
-    constexpr decltype(&run_vertices<Shader<0>>) variants[] = {                                                  \
-        &run_vertices<Shader<0>>, &run_vertices<Shader<1>>, &run_vertices<Shader<2>>, &run_vertices<Shader<3>>,  \
-        &run_vertices<Shader<4>>, &run_vertices<Shader<5>>, &run_vertices<Shader<6>>, &run_vertices<Shader<7>>}; \
-    variants[variant](push, vertices, count, results);                                                           \
+#define QG_VERT_KERNEL(name)                                                                               \
+  void QG_NAMED(name, MOMENTS, kernel)(const void* push, const uint* vertices, uint count, float* results, \
+                                       uint variant) {                                                     \
+    variant == 0 ? run_vertices<Shader<0>>(push, vertices, count, results)                                 \
+                 : run_vertices<Shader<1>>(push, vertices, count, results);                                \
   }
 
-#define QG_FRAG_KERNEL(name)                                                                                         \
-  void QG_NAMED(name, MOMENTS, kernel)(const void* push, bool front, const float* inputs, const float* right,        \
-                                       const float* below, uint count, float* colours, bool* kept, uint variant) {   \
-    constexpr decltype(&run_fragments<Shader<0>>) variants[] = {                                                     \
-        &run_fragments<Shader<0>>, &run_fragments<Shader<1>>, &run_fragments<Shader<2>>, &run_fragments<Shader<3>>,  \
-        &run_fragments<Shader<4>>, &run_fragments<Shader<5>>, &run_fragments<Shader<6>>, &run_fragments<Shader<7>>}; \
-    variants[variant](push, front, inputs, right, below, count, colours, kept);                                      \
+#define QG_FRAG_KERNEL(name)                                                                                       \
+  void QG_NAMED(name, MOMENTS, kernel)(const void* push, bool front, const float* inputs, const float* right,      \
+                                       const float* below, uint count, float* colours, bool* kept, uint variant) { \
+    variant == 0 ? run_fragments<Shader<0>>(push, front, inputs, right, below, count, colours, kept)               \
+                 : run_fragments<Shader<1>>(push, front, inputs, right, below, count, colours, kept);              \
   }
 
 }  // namespace quadgraph::cpu::QG_LEVEL

@@ -24,6 +24,10 @@ std::int32_t last_pixel(std::int32_t at) {
 // Values of one fragment: `b` are weights in the window, which add up to 1.
 void interpolate(const Triangle& t, const std::array<double, 3>& b, std::uint32_t locations, std::uint32_t flat,
                  float* result) {
+  if (flat == (1u << locations) - 1) {
+    std::copy_n(t.flat, std::size_t{4} * locations, result);
+    return;
+  }
   std::array<float, 3> weight;
   double sum = 0;
   for (std::size_t k = 0; k < 3; ++k) sum += b[k] * t.inverse_w[k];
@@ -48,7 +52,7 @@ ImageMemory& image(device::ImageMemory* memory) {
 
 Batch::Batch(const Frame& frame) : frame_(frame), derivatives_(false) {
   if (frame.pass.fragment == nullptr) return;
-  derivatives_ = (frame.pass.options.fragment->derivatives >> frame.pass.options.variant & 1u) != 0;
+  derivatives_ = frame.pass.options.fragment->derivatives;
   const std::size_t floats = std::size_t{4} * frame.locations() * fragments_at_once;
   inputs_.resize(floats);
   if (derivatives_) {
@@ -90,11 +94,12 @@ void Batch::shade(std::uint64_t texel, const Keep& keep) {
   const std::size_t images = frame_.target.colours.size();
   for (std::size_t i = 0; i < images; ++i) {
     const ImageMemory& target = image(frame_.target.colours[i]);
+    const std::uint32_t words = target.words();
     for (std::uint32_t k = 0; k < count_; ++k) {
       if (!kept_[k]) continue;
       const std::uint64_t at =
           texel + std::uint64_t{pixels_[k] / tile_side} * target.options.width + pixels_[k] % tile_side;
-      std::copy_n(colours_.data() + 4 * (images * k + i), 4, target.texels() + 4 * at);
+      std::copy_n(colours_.data() + 4 * (images * k + i), words, target.texels() + words * at);
     }
   }
   for (std::uint32_t k = 0; k < count_; ++k) {
@@ -217,7 +222,8 @@ void Tile::leave_empty(std::uint32_t pixel_of_tile, std::uint32_t count) const {
   const std::uint32_t x = pixel_of_tile % tile_side, y = pixel_of_tile / tile_side;
   for (device::ImageMemory* colour : frame_.target.colours) {
     const ImageMemory& target = image(colour);
-    std::fill_n(target.texels() + 4 * (texel_ + std::uint64_t{y} * target.options.width + x), 4 * count, 0.0f);
+    const std::uint32_t words = target.words();
+    std::fill_n(target.texels() + words * (texel_ + std::uint64_t{y} * target.options.width + x), words * count, 0.0f);
   }
 }
 
@@ -229,10 +235,11 @@ bool Tile::is_empty(const DrawMemory& memory) const {
 }
 
 // Unless it is clear from an earlier draw.
-void Tile::clear(ImageMemory& target, std::uint32_t floats, float value) const {
+void Tile::clear(ImageMemory& target, float value) const {
   if (target.clear_tiles[number_] != 0) return;
+  const std::uint32_t words = target.words();
   for (std::uint32_t y = 0; y < height_; ++y) {
-    std::fill_n(target.texels() + floats * (texel_ + std::uint64_t{y} * target.options.width), floats * width_, value);
+    std::fill_n(target.texels() + words * (texel_ + std::uint64_t{y} * target.options.width), words * width_, value);
   }
   target.clear_tiles[number_] = 1;
 }
@@ -257,10 +264,10 @@ void Tile::draw(std::uint32_t number, const DrawMemory& memory) {
   const bool empty = is_empty(memory),
              in_order = frame_.pass.fragment != nullptr && frame_.pass.options.fragment->discards;
   if (empty || in_order) {
-    for (device::ImageMemory* colour : frame_.target.colours) clear(image(colour), 4, 0);
+    for (device::ImageMemory* colour : frame_.target.colours) clear(image(colour), 0);
   }
   if (empty) {
-    clear(depth_, 1, frame_.pass.options.farthest());
+    clear(depth_, frame_.pass.options.farthest());
     return;
   }
   depth_.clear_tiles[number_] = 0;

@@ -56,7 +56,7 @@ class Tile {
   void draw_in_order(const DrawMemory& memory);
   void leave_empty(std::uint32_t pixel_of_tile, std::uint32_t count) const;
   bool is_empty(const DrawMemory& memory) const;
-  void clear(ImageMemory& target, std::uint32_t floats, float value) const;
+  void clear(ImageMemory& target, float value) const;
   void write_depths();
 
   const Frame& frame_;

@@ -48,7 +48,7 @@ struct DeviceInfo {
   bool cpu = false;    // computes on the processor
 };
 
-enum class Format { rgba32_float, depth32_float };
+enum class Format { rgba32_float, r32_uint, depth32_float };
 
 struct ImageOptions {
   Format format = Format::rgba32_float;
@@ -71,7 +71,8 @@ enum class Depth { rises, falls };
 struct GraphicsOptions {
   const Shader* vertex;       // its push constants are visible to both stages
   const Shader* fragment;     // null: depth only
-  std::uint32_t colours = 0;  // images of Format::rgba32_float that it writes; no blending
+  std::uint32_t colours = 0;  // images that it writes; no blending
+  Format colour = Format::rgba32_float;
   Cull cull = Cull::back;     // front faces are counter-clockwise in the window with y up
   std::uint32_t variant = 0;  // specialization constant 1 of the shaders that have it
   Depth depth = Depth::rises;

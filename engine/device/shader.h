@@ -38,15 +38,15 @@ struct CpuCode {
 
 struct Shader {
   const char* name;
-  Spirv code;                     // compiled for diffusion, where it makes a difference
-  Spirv sp3;                      // compiled for SP3; empty: it makes no difference
-  CpuCode cpu;                    // as `code`
-  CpuCode cpu_sp3;                // as `sp3`
-  std::uint32_t push_size;        // bytes of its push constants
-  std::uint32_t locations = 0;    // that a vertex shader writes
-  std::uint32_t flat = 0;         // bits of those that are not interpolated
-  std::uint32_t derivatives = 0;  // bits of the variants of a fragment shader that ask for them
-  bool discards = false;          // a fragment shader that may leave out a fragment
+  Spirv code;                   // compiled for diffusion, where it makes a difference
+  Spirv sp3;                    // compiled for SP3; empty: it makes no difference
+  CpuCode cpu;                  // as `code`
+  CpuCode cpu_sp3;              // as `sp3`
+  std::uint32_t push_size;      // bytes of its push constants
+  std::uint32_t locations = 0;  // that a vertex shader writes
+  std::uint32_t flat = 0;       // bits of those that are not interpolated
+  bool derivatives = false;     // a fragment shader that asks for them
+  bool discards = false;        // a fragment shader that may leave out a fragment
 };
 
 // One that touches fields, and has code for SP3.

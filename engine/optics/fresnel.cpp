@@ -1,6 +1,8 @@
 #include "engine/optics/fresnel.h"
 
 #include <cmath>
+#include <map>
+#include <utility>
 
 namespace quadgraph {
 
@@ -18,8 +20,9 @@ double internal_reflectance(double mu, double eta) {
   return 1.0 - fresnel_transmittance(std::sqrt(1.0 - sine2_outside), eta);
 }
 
-double fresnel_moment(int n, double eta) {
-  if (eta == 1.0) return 0.0;
+namespace {
+
+double integrated_moment(int n, double eta) {
   const double critical = std::sqrt(1.0 - 1.0 / (eta * eta));
   // R starts as a square root at the critical cosine: smooth in t, mu = critical + (1 - critical) t^2. Simpson's rule.
   constexpr int intervals = 1024;
@@ -31,6 +34,19 @@ double fresnel_moment(int n, double eta) {
     sum += weight * internal_reflectance(mu, eta) * std::pow(mu, n) * 2.0 * t;
   }
   return std::pow(critical, n + 1) / (n + 1) + (1.0 - critical) * sum / (3.0 * intervals);
+}
+
+}  // namespace
+
+// Kept by index and order: solves ask for those of their bodies over and over.
+double fresnel_moment(int n, double eta) {
+  if (eta == 1.0) return 0.0;
+  constexpr std::size_t most_kept = 256;
+  thread_local std::map<std::pair<int, double>, double> kept;
+  const auto found = kept.find({n, eta});
+  if (found != kept.end()) return found->second;
+  if (kept.size() == most_kept) kept.clear();
+  return kept[{n, eta}] = integrated_moment(n, eta);
 }
 
 double diffuse_transmittance(double eta) {

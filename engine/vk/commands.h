@@ -63,6 +63,7 @@ class Recording : public device::Recording {
   void begin();
   VkCommandBufferSubmitInfo finished();
   void end_and_run();
+  void ask_for(VkFence fence) const;
   void flush();
   std::vector<device::PassTime> read_times();
 

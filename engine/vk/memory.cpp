@@ -26,10 +26,6 @@ UniqueMemory allocate(Context& context, const VkMemoryRequirements& requirements
   return {context.device(), memory};
 }
 
-VkFormat vulkan_format(device::Format format) {
-  return format == device::Format::depth32_float ? VK_FORMAT_D32_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
-}
-
 UniqueImage create_image(Context& context, const device::ImageOptions& options, const std::string& name) {
   VkImageCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
@@ -50,6 +46,18 @@ UniqueImage create_image(Context& context, const device::ImageOptions& options, 
 }
 
 }  // namespace
+
+VkFormat vulkan_format(device::Format format) {
+  switch (format) {
+    case device::Format::depth32_float:
+      return VK_FORMAT_D32_SFLOAT;
+    case device::Format::r32_uint:
+      return VK_FORMAT_R32_UINT;
+    case device::Format::rgba32_float:
+      break;
+  }
+  return VK_FORMAT_R32G32B32A32_SFLOAT;
+}
 
 BufferMemory::BufferMemory(Context& its_context, std::uint64_t size, device::Place place, const std::string& name)
     : context(its_context) {

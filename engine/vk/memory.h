@@ -32,6 +32,8 @@ struct ImageMemory : device::ImageMemory {
   std::vector<UniqueImageView> views;
 };
 
+VkFormat vulkan_format(device::Format format);
+
 inline VkBuffer handle_of(const device::Memory& memory) {
   return static_cast<const BufferMemory&>(memory).buffer.get();
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "engine/base/error.h"
+#include "engine/vk/memory.h"
 
 namespace quadgraph::vk {
 namespace {
@@ -104,7 +105,7 @@ struct FixedState {
     opaque.colorWriteMask =
         VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
     attachments.assign(options.colours, opaque);
-    formats.assign(options.colours, VK_FORMAT_R32G32B32A32_SFLOAT);
+    formats.assign(options.colours, vulkan_format(options.colour));
     blend.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
     blend.attachmentCount = options.colours;
     blend.pAttachments = attachments.data();

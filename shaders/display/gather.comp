@@ -8,6 +8,8 @@ layout(local_size_x = WORKGROUP_SIZE) in;
 #include "display/pixel.glsl"
 
 SurfaceScene scene;
+#define SCENE scene
+#include "display/spot.glsl"
 #define BODY scene.solid.body
 #define TREE_BODY scene.solid.body
 #define TREE scene.solid.tree
@@ -16,26 +18,7 @@ SurfaceScene scene;
 #define POINTS scene.points
 #include "gather/leaving.glsl"
 
-const float PI = 3.14159265;
 const float CLEAR_DEPTH = 7.0;  // mean free paths over the whole body
-
-struct Sample {
-  uint face;
-  vec3 position, normal, specular;
-  float roughness;
-};
-
-Sample sample_at(uint i) {
-  vec4 specular = push.samples[1].at[i], normal = push.samples[2].at[i];
-  uint face = uint(specular.w) * FACE_HALF + uint(normal.w);
-  vec4 position = push.samples[0].at[i];
-  return Sample(face, position.xyz, normal.xyz, specular.xyz, position.w);
-}
-
-// Whether one ray does for two samples of a pixel. Between faces what is seen can change too much.
-bool together(Sample a, Sample b) {
-  return a.face == b.face;
-}
 
 // Barycentric coordinates of the point of a face that lies below or above `point`.
 vec3 coordinates_in(uint face, vec3 point) {
@@ -114,14 +97,39 @@ uint sample_of_block(uint index) {
   return hash(x + (y << 16u)) % DOUBT_SAMPLES;
 }
 
-// One view ray for all samples that lie together: where faces are larger than pixels, one per pixel. Samples are read
-// again where they are needed: an array of them would be slow to index.
+// What samples of a pixel show of one face: one view ray does for it. Between faces what is seen can change too much.
+struct Seen {
+  uint face;  // outside face of level 0
+  float share, roughness;
+  vec3 position, normal;  // mm; unit
+  vec3 specular;          // times its share
+};
+
+// The face that sample k shows; what is taken leaves `waiting`.
+Seen face_seen(Pixel pixel, uvec4 seen, uint first, inout uint waiting) {
+  Seen all = Seen(scene.triangle_face.at[seen[first] - 1u], 0.0, 0.0, vec3(0), vec3(0), vec3(0));
+  for (uint k = first; k < 4u; ++k) {
+    if ((waiting >> k & 1u) == 0u || scene.triangle_face.at[seen[k] - 1u] != all.face) continue;
+    uint samples = alike(seen, k);
+    waiting &= ~samples;
+    Spot spot = spot_of(pixel, seen[k] - 1u, samples);
+    if (all.share == 0.0) all.roughness = roughness;
+    all.share += spot.share;
+    all.position += spot.share * spot.position;
+    all.normal += spot.share * spot.normal;
+    all.specular += spot.share * spot.specular;
+  }
+  all.position /= all.share;
+  all.normal = normalize(all.normal);
+  return all;
+}
+
 void main() {
   Pixel pixel;
   if (!find_pixel(pixel)) return;
-  scene = push.scene.at[0];
-  uint waiting = 0u;
-  for (uint k = 0u; k < 4u; ++k) waiting |= push.samples[0].at[sample_of(pixel, k)].w > 0.0 ? 1u << k : 0u;
+  uvec4 samples = seen_in(pixel);
+  uint waiting = covered_samples(samples);
+  if (waiting != 0u) scene = push.scene.at[0];
   bool doubted = uvec2(push.doubt) != uvec2(0);
   vec3 scattered = vec3(0), specular = vec3(0), seen = vec3(0), unscattered = vec3(0);
   PixelDoubt doubt = PixelDoubt(0.0, 0.0, 0.0, 0.0, 0.0);
@@ -129,42 +137,29 @@ void main() {
   float alpha = 0.0;
   while (waiting != 0u) {
     uint k_first = uint(findLSB(waiting));
-    Sample first = sample_at(sample_of(pixel, k_first));
-    float share = 0.0;
-    vec3 position = vec3(0), normal = vec3(0);
-    for (uint k = 0u; k < 4u; ++k) {
-      Sample other = sample_at(sample_of(pixel, k));
-      bool taken = (waiting >> k & 1u) == 1u && together(first, other);
-      if (!taken) continue;
-      waiting &= ~(1u << k);
-      share += 0.25;
-      position += other.position;
-      normal += other.normal;
-      specular += 0.25 * other.specular;
-    }
-    position *= 0.25 / share;
-    vec3 v = towards_eye(scene.eye, position);
-    normal = normalize(normal);
-    vec3 l = coordinates_in(first.face, position);
-    float roughness = push.transmission < 0.0 ? first.roughness : push.transmission;
+    Seen here = face_seen(pixel, samples, k_first, waiting);
+    vec3 v = towards_eye(scene.eye, here.position);
+    vec3 l = coordinates_in(here.face, here.position);
+    float rough = push.transmission < 0.0 ? here.roughness : push.transmission;
     uint start = hash(4u * pixel.index + k_first);
-    Leaving light = through_facets(first.face, l, v, normal, roughness, start);
-    scattered += share * light.radiance;
-    seen += share * light.seen;
-    unscattered += share * light.seen * radiance_behind(-v);
-    alpha += share;
+    Leaving light = through_facets(here.face, l, v, here.normal, rough, start);
+    scattered += here.share * light.radiance;
+    specular += here.specular;
+    seen += here.share * light.seen;
+    unscattered += here.share * light.seen * radiance_behind(-v);
+    alpha += here.share;
     if (!doubted) continue;
-    PixelDoubt here = doubt_at(first.face, l, light);
-    doubt.unlit += share * here.unlit;
-    doubt.dimmest += share * here.dimmest;
-    doubt.angle += share * here.angle;
-    doubt.covered += share * here.covered;
+    PixelDoubt of_face = doubt_at(here.face, l, light);
+    doubt.unlit += here.share * of_face.unlit;
+    doubt.dimmest += here.share * of_face.dimmest;
+    doubt.angle += here.share * of_face.angle;
+    doubt.covered += here.share * of_face.covered;
     if (!compared) continue;
     Opticals middle = BODY.optical;
     BODY.optical = scene.elsewhere[sample_of_block(pixel.index)];
-    Leaving other = through_facets(first.face, l, v, normal, roughness, start);
+    Leaving other = through_facets(here.face, l, v, here.normal, rough, start);
     BODY.optical = middle;
-    doubt.medium += share * summed(other.radiance - light.radiance);
+    doubt.medium += here.share * summed(other.radiance - light.radiance);
   }
   vec3 layers[PICTURE_LAYERS];
   layers[0] = scattered;

@@ -1,5 +1,5 @@
 // Light that the surface reflects. The shader that includes it defines first
-//   SURFACE  the SurfacePush, e.g. push
+//   SCENE  the SurfaceScene, e.g. push.scene.at[0]
 // and sets `roughness`, `eta` and `evenly`.
 #ifndef QUADGRAPH_SPECULAR_GLSL
 #define QUADGRAPH_SPECULAR_GLSL
@@ -8,33 +8,40 @@
 #include "light/lights.glsl"
 #include "material/fresnel.glsl"
 
-#ifndef SURFACE
-#error "specular.glsl: SURFACE is not defined"
+#ifndef SCENE
+#error "specular.glsl: SCENE is not defined"
 #endif
-
-#define SCENE SURFACE.scene.at[0]
 
 const float PI = 3.14159265;
 
 float roughness;  // GGX alpha here
 float eta;        // index of refraction here
 float evenly;      // share of even light that the surface here reflects towards the view
-vec3 mesh_normal;  // with NORMAL_MAP: unit, before the map made it lean
+vec3 mesh_normal;  // with a map of normals: unit, before the map made it lean
 
 // Length of a way that is seen along the box's third axis, mm.
 float across_box(ImageBox box, vec3 way) {
   return length(vec2(dot(box.right, way), dot(box.up, way)));
 }
 
+// Whether an image says how rough the surface is, and how it leans.
+bool has_roughness_map() {
+  return uvec2(SCENE.roughness_map.texels) != uvec2(0);
+}
+bool has_normal_map() {
+  return uvec2(SCENE.normal_map.texels) != uvec2(0);
+}
+
 // Makes `roughness` that of a point of the surface, `rest` at rest, mm; `to_right` and `to_below`: how it differs
 // from pixel to pixel.
 void place_roughness(vec3 rest, vec3 to_right, vec3 to_below) {
-  vec3 place = in_box(SURFACE.box, rest);
-  float width = max(across_box(SURFACE.box, to_right), across_box(SURFACE.box, to_below));
-  if (any(greaterThan(abs(place), SURFACE.box.half_size))) return;
-  ImageTap tap = image_tap(SURFACE.image, in_picture(SURFACE.box, place), texels_across(SURFACE.box, SURFACE.image, width));
-  float share = clamp(luminance(load_image(SURFACE.texels, tap)), 0.0, 1.0);
-  roughness = mix(SCENE.roughness, SURFACE.roughness, share);
+  RoughnessMapRef map = SCENE.roughness_map;
+  vec3 place = in_box(map.box, rest);
+  float width = max(across_box(map.box, to_right), across_box(map.box, to_below));
+  if (any(greaterThan(abs(place), map.box.half_size))) return;
+  ImageTap tap = image_tap(map.image, in_picture(map.box, place), texels_across(map.box, map.image, width));
+  float share = clamp(luminance(load_image(map.texels, tap)), 0.0, 1.0);
+  roughness = mix(SCENE.roughness, map.roughness, share);
 }
 
 // Cook and Torrance 1982 with the GGX distribution and height-correlated Smith masking (Walter et al. 2007, Heitz 2014)
@@ -71,15 +78,16 @@ vec3 reflected_environment(LightShape shape, vec3 n, vec3 v) {
   vec3 mirrored = reflect(-v, n);
   vec3 seen = environment_at(shape, ENVIRONMENT_REFLECTED, mirrored);
   float range = SCENE.mirrored.y - SCENE.mirrored.x;
-  if (!(PLACED_ROUGHNESS || NORMAL_MAP) || range == 0.0) return seen;
+  if (range == 0.0 || !(has_roughness_map() || has_normal_map())) return seen;
   float share = clamp((roughness - SCENE.mirrored.x) / range, 0.0, 1.0);
   return mix(seen, environment_at(shape, ENVIRONMENT_REFLECTED_PLACED, mirrored), share);
 }
 
 // Towards v at a point of unit normal n that sees the share `sky` of its surroundings, W/(mm^2 sr).
 vec3 specular_radiance(vec3 position, vec3 n, vec3 v, float sky) {
+  bool leans = has_normal_map();
   vec3 sum = vec3(0.0), outwards = n;
-  if (NORMAL_MAP) outwards = mesh_normal;
+  if (leans) outwards = mesh_normal;
   for (uint i = 0u; i < SCENE.light_count; ++i) {
     LightRecord light = SCENE.lights.at[i];
     if (light.kind == LIGHT_AMBIENT) {
@@ -96,7 +104,7 @@ vec3 specular_radiance(vec3 position, vec3 n, vec3 v, float sky) {
     float alpha2 = roughness * roughness;
     if (SHAPED && light.kind == LIGHT_PATCH) alpha2 = blurred(light, shape, position);
     float reflected = cook_torrance(n, v, incident.direction, alpha2);
-    if (NORMAL_MAP) reflected *= share_of_slope(n, incident.direction);
+    if (leans) reflected *= share_of_slope(n, incident.direction);
     if (reflected == 0.0 || incident.share <= 0.0) continue;
     if (SHAPED && light.kind == LIGHT_PROJECTOR) light.power *= projected(shape, -incident.direction, 0.0);
     sum += reflected * light_visibility(light, SCENE.views, position, outwards, 1) * incident.share * light.power;

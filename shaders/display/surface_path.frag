@@ -3,7 +3,7 @@
 #include "path/path_light_shared.h"
 
 layout(push_constant, scalar) uniform Block { SurfacePathPush push; };
-#define SURFACE push.surface
+#define SCENE push.scene.at[0]
 layout(location = 0) in vec3 position;  // mm
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec3 rest;  // mm, where the roughness lies
@@ -41,9 +41,9 @@ void main() {
   eta = SCENE.eta;
   PathField field = push.field.at[0];
   if (field.tools.count > 0u && cut_away(field.tools, position)) discard;
-  if (PLACED_ROUGHNESS) place_roughness(rest, dFdx(rest), dFdy(rest));
+  if (has_roughness_map()) place_roughness(rest, dFdx(rest), dFdy(rest));
   vec3 at = position, n = normalize(normal), to_right = dFdx(position), to_below = dFdy(position);
-  if (NORMAL_MAP) n = mapped_normal(n, shape, dFdx(shape), dFdy(shape), to_right, to_below);
+  if (has_normal_map()) n = mapped_normal(n, shape, dFdx(shape), dFdy(shape), to_right, to_below);
   vec3 across = cross(to_right, to_below);
   if (field.tools.count > 0u && !gl_FrontFacing) {
     vec3 point, outward;

@@ -13,11 +13,6 @@
 namespace quadgraph::gpu {
 #endif
 
-// Bits of the variant of a pipeline, which is a specialization constant (shaped.glsl).
-#define VARIANT_SHAPED 1
-#define VARIANT_PLACED_ROUGHNESS 2
-#define VARIANT_NORMAL_MAP 4
-
 // Texels along a side of a shadow map: of a single view, and of each of a point light's six; of a patch.
 const uint SHADOW_SIZE = 2048u;
 const uint SHADOW_CUBE_SIZE = 1024u;
@@ -51,11 +46,20 @@ QG_ARRAY(LightShapes, LightShape);
 
 #endif
 
+// An image of how rough the surface is (engine/render/display/surface_roughness.h).
+struct RoughnessMapRef {
+  QG_REF(Vec3s) rest;    // per display vertex, mm
+  QG_REF(Vec3s) texels;  // of the image; null: the roughness is the same everywhere
+  ImageLevels image;
+  ImageBox box;
+  float roughness;  // GGX alpha where the image is white
+};
+
 // A picture of how the surface leans (engine/render/display/normal_map.h): slopes along the picture's right and up, and
 // the mean of their squared length [Olano 2010].
 struct NormalMapRef {
   QG_REF(Vec3s) rest;    // per display vertex, mm; or by coordinates of the mesh: u, v downwards, 1 where it lies
-  QG_REF(Vec3s) texels;  // of the image
+  QG_REF(Vec3s) texels;  // of the image; null: it leans nowhere
   ImageLevels image;
   ImageBox box;
   float strength;
@@ -68,7 +72,7 @@ const uint DOUBT_BLOCK = 4u;
 const uint DOUBT_SAMPLES = 4u;
 const uint DOUBT_STRIDE = 2u;
 
-// All that surface.vert and surface.frag read.
+// All that the display's surface is drawn and shaded by.
 struct SurfaceScene {
   mat4 clip_from_offset;  // of what is `origin` (mm) less than a place: engine/render/display/camera.h
   vec3 origin;
@@ -98,7 +102,8 @@ struct SurfaceScene {
   QG_REF(SurfaceShares) share;                // per surface vertex of level 0; null: errors are not told by part
   QG_REF(Opticals) elsewhere[DOUBT_SAMPLES];  // per tet: the material at other places in it; null: it changes in none
   SolidRef solid;
-  NormalMapRef normal_map;  // with VARIANT_NORMAL_MAP
+  RoughnessMapRef roughness_map;
+  NormalMapRef normal_map;
 };
 
 #ifndef __cplusplus
@@ -106,16 +111,9 @@ QG_ARRAY(SurfaceScenes, SurfaceScene);
 
 #endif
 
-// surface.vert, surface.frag: radiance of the display mesh. surface_gathered.vert, surface_gathered.frag: what is
-// needed to gather it.
-struct SurfacePush {
+// visibility.vert: which triangle of the display mesh is seen at a sample.
+struct VisibilityPush {
   QG_REF(SurfaceScenes) scene;  // one
-  // With VARIANT_PLACED_ROUGHNESS: engine/render/display/surface_roughness.h.
-  QG_REF(Vec3s) rest;    // per display vertex, mm
-  QG_REF(Vec3s) texels;  // of the image
-  ImageLevels image;
-  ImageBox box;
-  float roughness;  // GGX alpha where the image is white
 };
 
 // What a pixel's scattered radiance is off by, as far as gather.comp can tell (engine/render/picture/picture_error.h).
@@ -132,15 +130,15 @@ QG_ARRAY(PixelDoubts, PixelDoubt);
 
 // Layers of a picture: scattered, specular and unscattered radiance, and transmittance.
 #define PICTURE_LAYERS 4
-// Images of samples. surface.frag: scattered radiance and coverage, specular, unscattered. surface_gathered.frag:
-// position and roughness; specular and the high half of the face; normal and its low half.
+// Images of samples that surface_path.frag and false_colour.frag draw: scattered radiance and coverage, specular,
+// unscattered.
 #define SAMPLE_LAYERS 3
-#define FACE_HALF 65536
 
-// resolve.comp, gather.comp: mean of 2 x 2 samples of a tile into the picture.
+// resolve.comp, shading.comp, gather.comp: 2 x 2 samples of each pixel of a tile into the picture.
 struct ResolvePush {
-  QG_REF(SurfaceScenes) scene;  // one
-  QG_REF(Vec4s) samples[SAMPLE_LAYERS];
+  QG_REF(SurfaceScenes) scene;            // one
+  QG_REF(Uints) seen;                     // per sample: 1 + the display triangle, 0: none; null in resolve.comp
+  QG_REF(Vec4s) samples[SAMPLE_LAYERS];   // null but in resolve.comp
   QG_REF(Floats) layers[PICTURE_LAYERS];  // RGB per pixel, written
   QG_REF(Floats) alpha;                   // per pixel, written
   QG_REF(PixelDoubts) doubt;              // the same, by gather.comp; null: not wanted
@@ -150,6 +148,7 @@ struct ResolvePush {
   uint tile_height;
   uint sample_stride;  // samples in a row of the tile
   uint picture_width;  // pixels
+  uint picture_height;
   uint frame;          // of those that make the picture
   uint facets;         // of a rough surface, for each view ray through a clear body
   float transmission;  // GGX alpha of the surface for light that comes through; below 0: its own

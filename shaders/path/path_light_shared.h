@@ -33,8 +33,8 @@ struct PathEnterPush {
 
 // surface_path.vert, surface_path.frag: radiance of the display mesh, from the cells.
 struct SurfacePathPush {
-  SurfacePush surface;
-  QG_REF(PathFields) field;  // one
+  QG_REF(SurfaceScenes) scene;  // one
+  QG_REF(PathFields) field;     // one
 };
 
 #ifdef __cplusplus

@@ -18,11 +18,14 @@ void add_power(Uints sums, uint i, vec3 value) {
   vec3 high = floor(units * exp2(-32.0));
   uvec3 low_word = uvec3(roundEven(units - high * exp2(32.0)));
   uvec3 high_word = uvec3(high);
+  if (low_word == uvec3(0) && high_word == uvec3(0)) return;
+  // All channels are asked for before any answer is waited for.
+  uint at = FIXED_WORDS * i;
+  uvec3 before = uvec3(atomicAdd(sums.at[at], low_word.x), atomicAdd(sums.at[at + 2u], low_word.y),
+                       atomicAdd(sums.at[at + 4u], low_word.z));
   for (uint c = 0u; c < 3u; ++c) {
-    if (low_word[c] == 0u && high_word[c] == 0u) continue;
-    uint at = FIXED_WORDS * i + 2u * c, before = atomicAdd(sums.at[at], low_word[c]);
-    uint carried = high_word[c] + (before + low_word[c] < before ? 1u : 0u);
-    if (carried != 0u) atomicAdd(sums.at[at + 1u], carried);
+    uint carried = high_word[c] + (before[c] + low_word[c] < before[c] ? 1u : 0u);
+    if (carried != 0u) atomicAdd(sums.at[at + 2u * c + 1u], carried);
   }
 }
 #endif

@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass
 from pathlib import PurePosixPath
 
-from native import derivative_variants, kernel_name, locations, native_shader, stage_variables
+from native import asks_derivatives, kernel_name, locations, native_shader, stage_variables
 from shader_text import STAGES, Struct, Texts, elements_of, name_of, references_of, structs_of, with_includes
 
 PUSH_BLOCK = re.compile(r"uniform Block \{ (\w+) \w+; \}")
@@ -109,7 +109,7 @@ def stage_facts(texts: Texts, shader: Shader) -> str:
     text = texts[shader.file]
     if shader.file.endswith(".frag"):
         discards = "discard;" in text
-        return f", .derivatives = {derivative_variants(texts, shader.file)}, .discards = {str(discards).lower()}"
+        return f", .derivatives = {str(asks_derivatives(texts[shader.file])).lower()}, .discards = {str(discards).lower()}"
     if not shader.file.endswith(".vert"):
         return ""
     variables = stage_variables(text, "out")

@@ -24,9 +24,6 @@ PUSH = re.compile(r"^layout\(push_constant, scalar\) uniform Block \{ (\w+) ", r
 IN_MEMORY = re.compile(r"^QG_(?:\w+_)?ARRAY\(|^layout\(push_constant")
 PROTOTYPE = re.compile(r"^\w+ \w+\([^()]*\);$")
 
-VARIANTS = 8  # of a graphics pass
-ALL_VARIANTS = (1 << VARIANTS) - 1
-
 # Lines as a whole, in this order; what matches none stays as it is.
 LINES = [
     (re.compile(r"^#(?:version|extension)\b.*"), ""),
@@ -176,28 +173,14 @@ def stage_members(texts: Texts, file: str) -> str:
     way = "out" if stage == "vert" else "in"
     members = f"static constexpr uint locations = {locations(stage_variables(text, way))};\n" + table_of(text, "out")
     if stage == "frag":
-        variants = f"{derivative_variants(texts, file)}u"
         members += table_of(text, "in")
-        members += f"static constexpr bool derivatives = ({variants} >> VARIANT_OF_PASS & 1u) != 0u;\n"
+        members += f"static constexpr bool derivatives = {str(asks_derivatives(text)).lower()};\n"
     return members
 
 
-def derivative_variants(texts: Texts, file: str) -> int:
-    """Bits of the variants of a fragment shader that ask for derivatives: all, or those with the flag NAME where a line
-    that asks for them begins with "if (NAME)".
-    """
-    all_text = "\n".join(texts.values())
-    bits = 0
-    for line in texts[file].splitlines():
-        if not re.search(r"\b(?:dFd[xy]|fwidth)\(", line):
-            continue
-        condition = re.match(r" *if \((\w+)\) ", line)
-        if condition is None:
-            return ALL_VARIANTS
-        flag = re.search(rf"^const bool {condition[1]} = \(VARIANT & (\w+)\) != 0u;", all_text, re.M)
-        value = int(re.search(rf"^#define {flag[1]} (\d+)", all_text, re.M)[1])
-        bits |= sum(1 << variant for variant in range(VARIANTS) if variant & value)
-    return bits
+def asks_derivatives(text: str) -> bool:
+    """Whether a fragment shader does."""
+    return re.search(r"\b(?:dFd[xy]|fwidth)\(", text) is not None
 
 
 def kernel_name(file: str, moments: int) -> str:

@@ -11,20 +11,29 @@
 #include "interface/display/false_colour.vert.h"
 #include "interface/display/gather.comp.h"
 #include "interface/display/resolve.comp.h"
-#include "interface/display/surface.frag.h"
-#include "interface/display/surface.vert.h"
-#include "interface/display/surface_gathered.frag.h"
-#include "interface/display/surface_gathered.vert.h"
+#include "interface/display/shading.comp.h"
 #include "interface/display/surface_path.frag.h"
 #include "interface/display/surface_path.vert.h"
+#include "interface/display/visibility.frag.h"
+#include "interface/display/visibility.vert.h"
 #include "shaders/path/path_light_shared.h"
 
 namespace quadgraph {
 namespace {
 
-constexpr std::uint32_t tile_pixels = 512;  // per side; 96 MiB of samples
+// Per side: 48 bytes a sample are 48 MiB, and 4 bytes a sample 16 MiB, without what they are copied to.
+constexpr std::uint32_t layers_tile_pixels = 512, seen_tile_pixels = 1024;
 // Of pictures of several frames, for each view ray: what is seen through them differs much.
 constexpr std::uint32_t facets_where_clear = 4;
+
+gpu::RoughnessMapRef roughness_map(const PlacedRoughness* placed) {
+  if (placed == nullptr) return {};
+  return {.rest = placed->rest.address(),
+          .texels = placed->texels.address(),
+          .image = placed->image,
+          .box = placed->box,
+          .roughness = placed->roughness};
+}
 
 gpu::NormalMapRef normal_map(const PlacedNormals* placed) {
   if (placed == nullptr) return {};
@@ -65,6 +74,7 @@ gpu::SurfaceScene scene(const RasterInput& input, const Camera& camera) {
                           .share = 0,
                           .elsewhere = {},
                           .solid = {},
+                          .roughness_map = roughness_map(input.placed_roughness),
                           .normal_map = normal_map(input.placed_normals)};
   if (input.gather != nullptr) {
     scene.triangle_face = input.gather->triangle_face.address();
@@ -80,17 +90,6 @@ gpu::SurfaceScene scene(const RasterInput& input, const Camera& camera) {
   return scene;
 }
 
-gpu::SurfacePush surface_push(std::uint64_t scene, const PlacedRoughness* placed) {
-  gpu::SurfacePush push{.scene = scene, .rest = 0, .texels = 0, .image = {}, .box = {}, .roughness = 0};
-  if (placed == nullptr) return push;
-  push.rest = placed->rest.address();
-  push.texels = placed->texels.address();
-  push.image = placed->image;
-  push.box = placed->box;
-  push.roughness = placed->roughness;
-  return push;
-}
-
 gpu::SurfaceScene scene(const PathInput& input, const Camera& camera) {
   gpu::SurfaceScene scene{};
   scene.clip_from_offset = camera.clip_from_offset;
@@ -100,6 +99,7 @@ gpu::SurfaceScene scene(const PathInput& input, const Camera& camera) {
   scene.eta = input.eta;
   scene.roughness = input.roughness;
   scene.mirrored = input.mirrored;
+  scene.roughness_map = roughness_map(input.placed_roughness);
   scene.normal_map = normal_map(input.placed_normals);
   scene.radiance_norm = static_cast<float>(radiance_norm(input.eta));
   scene.light_count = input.shadows.light_count();
@@ -111,110 +111,113 @@ gpu::SurfaceScene scene(const PathInput& input, const Camera& camera) {
   return scene;
 }
 
-template <typename Input>
-std::uint32_t variant_of(const Input& input) {
-  return (input.shadows.shaped() ? VARIANT_SHAPED : 0u) |
-         (input.placed_roughness != nullptr ? VARIANT_PLACED_ROUGHNESS : 0u) |
-         (input.placed_normals != nullptr ? VARIANT_NORMAL_MAP : 0u);
-}
-
-device::GraphicsOptions pass_options(const device::Shader& vertex, const device::Shader& fragment,
-                                     std::uint32_t variant = 0) {
+// Of what draws layers of samples.
+device::GraphicsOptions layers_options(const device::Shader& vertex, const device::Shader& fragment,
+                                       std::uint32_t variant = 0) {
   return {.vertex = &vertex,
           .fragment = &fragment,
           .colours = SAMPLE_LAYERS,
+          .cull = device::Cull::none,
           .variant = variant,
           .depth = device::Depth::falls};
 }
+
+const device::GraphicsOptions visibility_options{.vertex = &shader::visibility_vert,
+                                                 .fragment = &shader::visibility_frag,
+                                                 .colours = 1,
+                                                 .colour = device::Format::r32_uint,
+                                                 .depth = device::Depth::falls};
 
 }  // namespace
 
 struct Rasteriser::Tile {
   std::uint32_t x, y, width, height;  // pixels inside the picture
 
-  std::uint64_t sample_bytes() const { return 64ull * width * height; }
+  std::uint64_t samples() const { return 4ull * width * height; }
 };
 
-// For tiles of up to as many pixels.
+// What tiles are drawn into: one kind of images.
 struct Rasteriser::Targets {
-  Targets(device::Device& device, std::uint32_t tile_width, std::uint32_t tile_height)
-      : width(tile_width),
-        height(tile_height),
-        depth(device, image_options(device::Format::depth32_float), "picture/depth") {
-    for (int k = 0; k < SAMPLE_LAYERS; ++k) {
-      images.emplace_back(device, image_options(device::Format::rgba32_float), "picture/samples");
+  Targets(device::Device& device, device::Format format, std::uint32_t images_each, std::uint32_t most)
+      : device_(device), format_(format), images_each_(images_each), tile_pixels(most) {}
+
+  // For tiles of a picture of that size.
+  void make_room(std::uint32_t picture_width, std::uint32_t picture_height) {
+    const std::uint32_t wide = std::max(width, std::min(picture_width, tile_pixels)),
+                        high = std::max(height, std::min(picture_height, tile_pixels));
+    if (depth && wide == width && high == height) return;
+    width = wide;
+    height = high;
+    images.clear();
+    samples.clear();
+    depth.emplace(device_, image_options(device::Format::depth32_float), "picture/depth");
+    for (std::uint32_t k = 0; k < images_each_; ++k) {
+      images.emplace_back(device_, image_options(format_), "picture/samples");
       if (in_place()) continue;
-      samples.emplace_back(device, 64ull * width * height, device::Place::device, "picture/samples");
+      samples.emplace_back(device_, bytes_of(4ull * width * height), device::Place::device, "picture/samples");
     }
   }
 
   device::ImageOptions image_options(device::Format format) const { return {format, 2 * width, 2 * height}; }
   bool in_place() const { return images.front().address() != 0; }  // images are read, not copies of them
+  std::uint64_t bytes_of(std::uint64_t count) const {              // samples, in one image
+    return (format_ == device::Format::rgba32_float ? 16 : 4) * count;
+  }
 
-  std::uint32_t width, height;  // pixels of 2 x 2 samples
+  // Where a shader reads the samples of image k.
+  std::uint64_t address(std::size_t k) const { return in_place() ? images[k].address() : samples[k].address(); }
+
+ private:
+  device::Device& device_;
+  device::Format format_;
+  std::uint32_t images_each_;
+
+ public:
+  const std::uint32_t tile_pixels;      // per side, at most
+  std::uint32_t width = 0, height = 0;  // pixels of 2 x 2 samples
   std::vector<device::Image> images;
-  device::Image depth;
+  std::optional<device::Image> depth;
   std::vector<device::Buffer> samples;  // the same, of what a tile covers, where images are not read in place
 };
 
-Rasteriser::Rasteriser(device::Device& device) : device_(device), resolve_(device, shader::resolve) {}
-
-const device::GraphicsPass& Rasteriser::surface(const RasterInput& input) {
-  const bool gathered = input.gather != nullptr;
-  const std::uint32_t variant = variant_of(input);
-  auto& pass = surfaces_[(gathered ? 1 : 0) + 2 * variant];
-  if (pass) return *pass;
-  if (!gathered)
-    return pass.emplace(device_, pass_options(shader::surface_vert, shader::surface_frag, variant), "surface");
-  return pass.emplace(device_, pass_options(shader::surface_gathered_vert, shader::surface_gathered_frag, variant),
-                      "surface gathered");
-}
+Rasteriser::Rasteriser(device::Device& device)
+    : device_(device),
+      resolve_(device, shader::resolve),
+      layers_(std::make_unique<Targets>(device, device::Format::rgba32_float, SAMPLE_LAYERS, layers_tile_pixels)),
+      seen_(std::make_unique<Targets>(device, device::Format::r32_uint, 1, seen_tile_pixels)) {}
 
 const device::GraphicsPass& Rasteriser::surface(const PathInput& input) {
-  const std::uint32_t variant = variant_of(input);
-  auto& pass = paths_[variant];
+  auto& pass = paths_[input.shadows.shaped() ? 1 : 0];
   if (pass) return *pass;
-  device::GraphicsOptions options = pass_options(shader::surface_path_vert, shader::surface_path_frag, variant);
-  options.cull = device::Cull::none;
-  return pass.emplace(device_, options, "surface of cells");
+  return pass.emplace(device_,
+                      layers_options(shader::surface_path_vert, shader::surface_path_frag, input.shadows.shaped()),
+                      "surface of cells");
 }
 
-const device::ComputePass& Rasteriser::resolve(const RasterInput& input) {
-  if (input.gather == nullptr) return resolve_;
+const device::ComputePass& Rasteriser::shading(const RasterInput& input) {
   const std::uint32_t shaped = input.shadows.shaped() ? 1 : 0;
-  auto& pass = gathers_[shaped];
+  auto& pass = shadings_[2 * shaped + (input.gather != nullptr ? 1 : 0)];
   if (pass) return *pass;
-  return pass.emplace(device_, shader::gather, device::ComputeOptions{.variant = shaped});
+  const device::Shader& shader = input.gather != nullptr ? shader::gather : shader::shading;
+  return pass.emplace(device_, shader, device::ComputeOptions{.variant = shaped});
 }
 
 Rasteriser::~Rasteriser() = default;
-
-void Rasteriser::make_room(std::uint32_t width, std::uint32_t height) {
-  picture_.resize(device_, width, height);
-  if (picture_.has_doubt) picture_.make_room_doubt(device_);
-  std::uint32_t tile_width = std::min(width, tile_pixels), tile_height = std::min(height, tile_pixels);
-  if (targets_ && targets_->width >= tile_width && targets_->height >= tile_height) return;
-  if (targets_) {
-    tile_width = std::max(tile_width, targets_->width);
-    tile_height = std::max(tile_height, targets_->height);
-    targets_.reset();
-  }
-  targets_ = std::make_unique<Targets>(device_, tile_width, tile_height);
-}
 
 device::Viewport Rasteriser::viewport(const Tile& tile) const {
   return {-2.0f * static_cast<float>(tile.x), -2.0f * static_cast<float>(tile.y),
           2.0f * static_cast<float>(picture_.width), 2.0f * static_cast<float>(picture_.height)};
 }
 
-device::DrawTarget Rasteriser::target(const Tile& tile) const {
-  device::DrawTarget target{{}, &targets_->depth, 2 * tile.width, 2 * tile.height};
-  for (const device::Image& image : targets_->images) target.colours.push_back(&image);
+device::DrawTarget Rasteriser::target(const Targets& targets, const Tile& tile) {
+  device::DrawTarget target{{}, &*targets.depth, 2 * tile.width, 2 * tile.height};
+  for (const device::Image& image : targets.images) target.colours.push_back(&image);
   return target;
 }
 
-gpu::ResolvePush Rasteriser::resolve_push(std::uint64_t scene, const Tile& tile) const {
-  gpu::ResolvePush resolve{.scene = scene,
+gpu::ResolvePush Rasteriser::resolve_push(const Targets& targets, const Tile& tile) const {
+  gpu::ResolvePush resolve{.scene = scene_.address(),
+                           .seen = 0,
                            .samples = {},
                            .layers = {},
                            .alpha = picture_.alpha.address(),
@@ -223,47 +226,51 @@ gpu::ResolvePush Rasteriser::resolve_push(std::uint64_t scene, const Tile& tile)
                            .tile_y = tile.y,
                            .tile_width = tile.width,
                            .tile_height = tile.height,
-                           .sample_stride = 2 * (targets_->in_place() ? targets_->width : tile.width),
+                           .sample_stride = 2 * (targets.in_place() ? targets.width : tile.width),
                            .picture_width = picture_.width,
+                           .picture_height = picture_.height,
                            .frame = 0,
                            .facets = 1,
                            .transmission = 0};
   for (std::size_t k = 0; k < PICTURE_LAYERS; ++k) resolve.layers[k] = picture_.layers[k].address();
-  for (std::size_t k = 0; k < SAMPLE_LAYERS; ++k) {
-    resolve.samples[k] = targets_->in_place() ? targets_->images[k].address() : targets_->samples[k].address();
+  if (&targets == seen_.get()) {
+    resolve.seen = targets.address(0);
+  } else {
+    for (std::size_t k = 0; k < SAMPLE_LAYERS; ++k) resolve.samples[k] = targets.address(k);
   }
   return resolve;
 }
 
 void Rasteriser::record_resolve(device::Commands& commands, const char* name, const device::ComputePass& pass,
-                                const gpu::ResolvePush& push) {
+                                const Targets& targets, const gpu::ResolvePush& push) {
   commands.begin_pass(name);
-  for (std::size_t k = 0; !targets_->in_place() && k < SAMPLE_LAYERS; ++k) {
-    commands.copy(targets_->images[k], targets_->samples[k], 2 * push.tile_width, 2 * push.tile_height);
+  for (std::size_t k = 0; k < targets.samples.size(); ++k) {
+    commands.copy(targets.images[k], targets.samples[k], 2 * push.tile_width, 2 * push.tile_height);
   }
   commands.dispatch(pass, push, std::uint64_t{push.tile_width} * push.tile_height);
   commands.end_pass();
 }
 
 void Rasteriser::record(device::Commands& commands, const RasterInput& input, const Tile& tile) {
-  commands.begin_pass("surface");
-  commands.draw(target(tile), viewport(tile), surface(input), surface_push(scene_.address(), input.placed_roughness),
-                input.gather != nullptr ? nullptr : &input.mesh.triangles, 3 * input.mesh.triangle_count);
+  if (!visibility_) visibility_.emplace(device_, visibility_options, "visibility");
+  commands.begin_pass("visibility");
+  commands.draw(target(*seen_, tile), viewport(tile), *visibility_, gpu::VisibilityPush{scene_.address()}, nullptr,
+                3 * input.mesh.triangle_count);
   commands.end_pass();
-  gpu::ResolvePush push = resolve_push(scene_.address(), tile);
+  gpu::ResolvePush push = resolve_push(*seen_, tile);
   push.frame = input.frame;
   push.facets = input.single_frame ? 1 : facets_where_clear;
   push.transmission = input.transmission_roughness.value_or(-1.0f);
-  record_resolve(commands, input.gather != nullptr ? "gather" : "resolve", resolve(input), push);
+  record_resolve(commands, input.gather != nullptr ? "gather" : "shading", shading(input), *seen_, push);
 }
 
 void Rasteriser::record(device::Commands& commands, const PathInput& input, const Tile& tile) {
   commands.begin_pass("surface");
-  commands.draw(target(tile), viewport(tile), surface(input),
-                gpu::SurfacePathPush{surface_push(scene_.address(), input.placed_roughness), input.field.address()},
-                &input.mesh.triangles, 3 * input.mesh.triangle_count);
+  commands.draw(target(*layers_, tile), viewport(tile), surface(input),
+                gpu::SurfacePathPush{scene_.address(), input.field.address()}, &input.mesh.triangles,
+                3 * input.mesh.triangle_count);
   commands.end_pass();
-  record_resolve(commands, "resolve", resolve_, resolve_push(scene_.address(), tile));
+  record_resolve(commands, "resolve", resolve_, *layers_, resolve_push(*layers_, tile));
 }
 
 void Rasteriser::record(device::Commands& commands, const FalseColours& input, const Camera& camera, const Tile& tile) {
@@ -274,19 +281,23 @@ void Rasteriser::record(device::Commands& commands, const FalseColours& input, c
                                   .plane = input.plane,
                                   .diverging = input.diverging ? 1u : 0u};
   commands.begin_pass("false colour");
-  commands.draw(target(tile), viewport(tile), *false_colour_, push, &input.indices, input.vertex_count);
+  commands.draw(target(*layers_, tile), viewport(tile), *false_colour_, push, &input.indices, input.vertex_count);
   commands.end_pass();
-  record_resolve(commands, "resolve", resolve_, resolve_push(scene_.address(), tile));
+  record_resolve(commands, "resolve", resolve_, *layers_, resolve_push(*layers_, tile));
 }
 
 // Adds up what the two passes of every tile took.
 template <typename Record>
-std::vector<PassStats> Rasteriser::run_tiles(std::uint32_t width, std::uint32_t height, const Record& record_tile) {
-  make_room(width, height);
+std::vector<PassStats> Rasteriser::run_tiles(Targets& targets, std::uint32_t width, std::uint32_t height,
+                                             const Record& record_tile) {
+  picture_.resize(device_, width, height);
+  if (picture_.has_doubt) picture_.make_room_doubt(device_);
+  targets.make_room(width, height);
   std::vector<PassStats> passes(2);
-  for (std::uint32_t y = 0; y < height; y += tile_pixels) {
-    for (std::uint32_t x = 0; x < width; x += tile_pixels) {
-      const Tile tile{x, y, std::min(tile_pixels, width - x), std::min(tile_pixels, height - y)};
+  const std::uint32_t side = targets.tile_pixels;
+  for (std::uint32_t y = 0; y < height; y += side) {
+    for (std::uint32_t x = 0; x < width; x += side) {
+      const Tile tile{x, y, std::min(side, width - x), std::min(side, height - y)};
       device::Commands commands(device_, 2);
       record_tile(commands, tile);
       const auto times = commands.submit_and_wait();
@@ -295,8 +306,9 @@ std::vector<PassStats> Rasteriser::run_tiles(std::uint32_t width, std::uint32_t 
         passes[k].time_ms += times[k].time_ms;
         ++passes[k].count;
       }
-      passes[0].bytes += (2 * SAMPLE_LAYERS + 1) * tile.sample_bytes() / 2;
-      passes[1].bytes += (targets_->in_place() ? 1 : 3) * SAMPLE_LAYERS * tile.sample_bytes();  // read; copied before
+      const std::uint64_t colours = targets.images.size() * targets.bytes_of(tile.samples());
+      passes[0].bytes += colours + 4 * tile.samples();            // and depths
+      passes[1].bytes += (targets.in_place() ? 1 : 3) * colours;  // read; copied before
     }
   }
   const std::uint64_t doubt = picture_.has_doubt ? sizeof(gpu::PixelDoubt) : 0;
@@ -313,8 +325,8 @@ std::vector<PassStats> Rasteriser::run(const PathInput& input, const Camera& cam
                                        std::uint32_t height) {
   write_scene(scene(input, camera));
   picture_.has_doubt = false;
-  auto passes =
-      run_tiles(width, height, [&](device::Commands& commands, const Tile& tile) { record(commands, input, tile); });
+  auto passes = run_tiles(*layers_, width, height,
+                          [&](device::Commands& commands, const Tile& tile) { record(commands, input, tile); });
   picture_.false_colour = false;
   passes[0].bytes += passes[0].count * (64ull * input.mesh.vertex_count + input.mesh.triangles.size());
   return passes;
@@ -324,11 +336,12 @@ std::vector<PassStats> Rasteriser::run(const RasterInput& input, const Camera& c
                                        std::uint32_t height) {
   write_scene(scene(input, camera));
   picture_.has_doubt = input.gather != nullptr && input.gather->share != nullptr;
-  auto passes =
-      run_tiles(width, height, [&](device::Commands& commands, const Tile& tile) { record(commands, input, tile); });
+  auto passes = run_tiles(*seen_, width, height,
+                          [&](device::Commands& commands, const Tile& tile) { record(commands, input, tile); });
   picture_.false_colour = false;
   picture_.has_surroundings = false;
-  passes[0].bytes += passes[0].count * (64ull * input.mesh.vertex_count + input.mesh.triangles.size());
+  passes[0].bytes += passes[0].count * (input.mesh.vertices.size() + input.mesh.triangles.size());
+  passes[1].bytes += passes[1].count * (64ull * input.mesh.vertex_count + input.mesh.triangles.size());
   // Bytes of the body are counted as if every vertex were read once.
   if (input.gather != nullptr) passes[1].bytes += passes[1].count * input.gather->field.points().size();
   return passes;
@@ -337,12 +350,11 @@ std::vector<PassStats> Rasteriser::run(const RasterInput& input, const Camera& c
 std::vector<PassStats> Rasteriser::run(const FalseColours& input, const Camera& camera, std::uint32_t width,
                                        std::uint32_t height) {
   if (!false_colour_) {
-    device::GraphicsOptions options = pass_options(shader::false_colour_vert, shader::false_colour_frag);
-    options.cull = device::Cull::none;
-    false_colour_.emplace(device_, options, "false colour");
+    false_colour_.emplace(device_, layers_options(shader::false_colour_vert, shader::false_colour_frag),
+                          "false colour");
   }
   picture_.has_doubt = false;
-  auto passes = run_tiles(width, height,
+  auto passes = run_tiles(*layers_, width, height,
                           [&](device::Commands& commands, const Tile& tile) { record(commands, input, camera, tile); });
   picture_.false_colour = true;
   picture_.has_surroundings = false;

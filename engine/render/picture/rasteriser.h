@@ -87,7 +87,7 @@ struct FalseColours {
 FalseColours upload_false_colours(device::Device& device, const FalseMesh& mesh, const Plane& plane, bool diverging);
 
 // Draws in tiles, so that the memory of the samples does not grow with the picture. What it draws into is kept from
-// picture to picture.
+// picture to picture. Of a body with levels, only which triangle is seen is drawn; all else is computed from it.
 class Rasteriser {
  public:
   explicit Rasteriser(device::Device& device);
@@ -109,33 +109,32 @@ class Rasteriser {
   struct Tile;
   struct Targets;
 
-  void make_room(std::uint32_t width, std::uint32_t height);
   device::Viewport viewport(const Tile& tile) const;
-  device::DrawTarget target(const Tile& tile) const;
-  gpu::ResolvePush resolve_push(std::uint64_t scene, const Tile& tile) const;
+  static device::DrawTarget target(const Targets& targets, const Tile& tile);
+  gpu::ResolvePush resolve_push(const Targets& targets, const Tile& tile) const;
   void record(device::Commands& commands, const RasterInput& input, const Tile& tile);
   void record(device::Commands& commands, const PathInput& input, const Tile& tile);
   void record(device::Commands& commands, const FalseColours& input, const Camera& camera, const Tile& tile);
   void record_resolve(device::Commands& commands, const char* name, const device::ComputePass& pass,
-                      const gpu::ResolvePush& push);
+                      const Targets& targets, const gpu::ResolvePush& push);
 
   template <typename Record>
-  std::vector<PassStats> run_tiles(std::uint32_t width, std::uint32_t height, const Record& record_tile);
+  std::vector<PassStats> run_tiles(Targets& targets, std::uint32_t width, std::uint32_t height,
+                                   const Record& record_tile);
 
   void write_scene(const gpu::SurfaceScene& scene);
-  const device::GraphicsPass& surface(const RasterInput& input);
   const device::GraphicsPass& surface(const PathInput& input);
-  const device::ComputePass& resolve(const RasterInput& input);
+  const device::ComputePass& shading(const RasterInput& input);
 
   device::Device& device_;
-  std::array<std::optional<device::GraphicsPass>, 16> surfaces_;  // gathered or not, by variant; at first use
-  std::array<std::optional<device::GraphicsPass>, 8> paths_;      // from cells, by variant; the same
+  std::optional<device::GraphicsPass> visibility_;              // as all but resolve_ made at first use
+  std::array<std::optional<device::ComputePass>, 4> shadings_;  // without shaped lights and with, gathered or not
+  std::array<std::optional<device::GraphicsPass>, 2> paths_;    // from cells, without shaped lights and with
+  std::optional<device::GraphicsPass> false_colour_;
   device::ComputePass resolve_;
-  std::array<std::optional<device::ComputePass>, 2> gathers_;  // without shaped lights and with; at first use
-  std::optional<device::GraphicsPass> false_colour_;           // made at first use
   PictureBuffers picture_;
-  std::unique_ptr<Targets> targets_;  // of a tile
-  device::Buffer scene_;              // made at first use, as the targets are: no solve needs them
+  std::unique_ptr<Targets> layers_, seen_;  // of a tile
+  device::Buffer scene_;                    // made at first use, as targets are: no solve needs them
 };
 
 }  // namespace quadgraph

@@ -1,0 +1,145 @@
+// What is seen of the surface in a pixel, triangle by triangle (visibility buffer, Burns and Hunt 2013): shaded once for
+// all samples of the pixel that show the triangle. The shader that includes it includes display/pixel.glsl first, and
+// defines
+//   SCENE  the SurfaceScene, e.g. push.scene.at[0]
+#ifndef QUADGRAPH_SPOT_GLSL
+#define QUADGRAPH_SPOT_GLSL
+
+#include "display/specular.glsl"
+#include "display/shading_normal.glsl"
+
+// Part of a display triangle. `roughness`, `eta` and `evenly` become those of the last that was made.
+struct Spot {
+  uvec3 vertices;  // of the display mesh
+  uint face;       // outside face of level 0
+  vec3 l;          // barycentric coordinates of its middle in the triangle
+  vec3 position;   // mm
+  vec3 normal;     // unit, by which it is shaded
+  vec3 towards;    // the eye, unit
+  vec3 specular;   // W/(mm^2 sr)
+  float share;     // of the pixel
+  float even_transmittance;  // what passes of even light within, over that of all directions: Lambertian radiance
+};
+
+// Samples of a pixel, as bits, that show anything; and those that show what sample k does.
+uint covered_samples(uvec4 seen) {
+  uint mask = 0u;
+  for (uint k = 0u; k < 4u; ++k) mask |= seen[k] != 0u ? 1u << k : 0u;
+  return mask;
+}
+uint alike(uvec4 seen, uint k) {
+  uint mask = 0u;
+  for (uint other = 0u; other < 4u; ++other) mask |= seen[other] == seen[k] ? 1u << other : 0u;
+  return mask;
+}
+
+// By sample of the pixel.
+uvec4 seen_in(Pixel pixel) {
+  return uvec4(push.seen.at[sample_of(pixel, 0u)], push.seen.at[sample_of(pixel, 1u)],
+               push.seen.at[sample_of(pixel, 2u)], push.seen.at[sample_of(pixel, 3u)]);
+}
+
+// Of the middle of some samples of a pixel: x and y in clip space after division.
+vec2 middle_of(Pixel pixel, uint samples) {
+  vec2 sum = vec2(0);
+  float count = 0.0;
+  for (uint k = 0u; k < 4u; ++k) {
+    float taken = float(samples >> k & 1u);
+    sum += taken * vec2(0.25 + 0.5 * float(k & 1u), 0.25 + 0.5 * float(k >> 1u));
+    count += taken;
+  }
+  vec2 size = vec2(float(push.picture_width), float(push.picture_height));
+  vec2 corner = vec2(float(pixel.index % push.picture_width), float(pixel.index / push.picture_width));
+  vec2 at = 2.0 * (corner + sum / count) / size - 1.0;
+  return vec2(at.x, -at.y);
+}
+
+vec3 clip_of(uint vertex) {
+  vec4 clip = SCENE.clip_from_offset * vec4(SCENE.vertices.at[vertex] - SCENE.origin, 1.0);
+  return vec3(clip.x, clip.y, clip.w);
+}
+
+float crossed(vec2 a, vec2 b) {
+  return a.x * b.y - a.y * b.x;
+}
+
+// Barycentric coordinates, in perspective, of what a triangle's plane shows at a place in clip space; columns: x, y, w
+// of its corners in clip space. Corners are taken from the place first, where little is lost to rounding.
+vec3 weights_at(mat3 corners, vec2 place) {
+  vec2 a = vec2(corners[0].x, corners[0].y) - corners[0].z * place;
+  vec2 b = vec2(corners[1].x, corners[1].y) - corners[1].z * place;
+  vec2 c = vec2(corners[2].x, corners[2].y) - corners[2].z * place;
+  vec3 area = vec3(crossed(b, c), crossed(c, a), crossed(a, b));
+  float sum = area.x + area.y + area.z;
+  return sum == 0.0 ? vec3(1.0 / 3.0) : area / sum;
+}
+
+// Weights of what lies within; the edges were rounded to a fraction of a pixel when samples were drawn.
+vec3 inside_triangle(vec3 l) {
+  l = max(l, vec3(0));
+  return l / (l.x + l.y + l.z);
+}
+
+// A value at weights l, of three.
+vec3 weighed(vec3 l, vec3 a, vec3 b, vec3 c) {
+  return l.x * a + l.y * b + l.z * c;
+}
+vec3 positions_weighed(uvec3 at, vec3 l) {
+  return weighed(l, SCENE.vertices.at[at.x], SCENE.vertices.at[at.y], SCENE.vertices.at[at.z]);
+}
+vec3 roughness_place(uvec3 at, vec3 l) {
+  return weighed(l, SCENE.roughness_map.rest.at[at.x], SCENE.roughness_map.rest.at[at.y],
+                 SCENE.roughness_map.rest.at[at.z]);
+}
+vec3 normal_place(uvec3 at, vec3 l) {
+  return weighed(l, SCENE.normal_map.rest.at[at.x], SCENE.normal_map.rest.at[at.y], SCENE.normal_map.rest.at[at.z]);
+}
+
+// Makes `roughness` that of a point, and returns the normal by which it is shaded, unit: n, as maps lean it. `right`
+// and `below`: barycentric coordinates a pixel away.
+vec3 mapped(uvec3 at, vec3 l, vec3 right, vec3 below, vec3 n) {
+  if (has_roughness_map()) {
+    vec3 rest = roughness_place(at, l);
+    place_roughness(rest, roughness_place(at, right) - rest, roughness_place(at, below) - rest);
+  }
+  if (!has_normal_map()) return n;
+  vec3 shape = normal_place(at, l), position = positions_weighed(at, l);
+  return mapped_normal(n, shape, normal_place(at, right) - shape, normal_place(at, below) - shape,
+                       positions_weighed(at, right) - position, positions_weighed(at, below) - position);
+}
+
+// What some samples of a pixel show of one display triangle.
+Spot spot_of(Pixel pixel, uint triangle, uint samples) {
+  Spot spot;
+  spot.share = 0.25 * float(bitCount(samples));
+  uvec3 at = uvec3(SCENE.triangles.at[3u * triangle], SCENE.triangles.at[3u * triangle + 1u],
+                   SCENE.triangles.at[3u * triangle + 2u]);
+  spot.vertices = at;
+  spot.face = SCENE.face.at[at.x];
+  mat3 corners = mat3(clip_of(at.x), clip_of(at.y), clip_of(at.z));
+  vec2 place = middle_of(pixel, samples);
+  spot.l = inside_triangle(weights_at(corners, place));
+  spot.position = positions_weighed(at, spot.l);
+  spot.towards = towards_eye(SCENE.eye, spot.position);
+  vec3 n = normalize(weighed(spot.l, SCENE.normals.at[at.x], SCENE.normals.at[at.y], SCENE.normals.at[at.z]));
+  roughness = SCENE.roughness;
+  if (has_roughness_map() || has_normal_map()) {
+    vec3 right = weights_at(corners, place + vec2(2.0 / float(push.picture_width), 0.0));
+    vec3 below = weights_at(corners, place - vec2(0.0, 2.0 / float(push.picture_height)));
+    n = mapped(at, spot.l, right, below, n);
+  }
+  vec3 first = SCENE.vertices.at[at.x];
+  vec3 across = cross(SCENE.vertices.at[at.y] - first, SCENE.vertices.at[at.z] - first);
+  spot.normal = seen_normal(n, across, spot.towards);
+  Refraction body = refraction_behind(SCENE.face_kinds, spot.face);
+  eta = body.eta;
+  float cosine = dot(spot.normal, spot.towards);
+  evenly = rough_reflectance(body, cosine, roughness);
+  spot.even_transmittance = fresnel_transmittance(clamp(cosine, 0.0, 1.0), eta) / body.radiance_norm;
+  float sky = dot(spot.l, vec3(SCENE.sky.at[SCENE.face.at[at.x]], SCENE.sky.at[SCENE.face.at[at.y]],
+                               SCENE.sky.at[SCENE.face.at[at.z]]));
+  spot.specular = specular_radiance(spot.position, spot.normal, spot.towards, sky);
+  return spot;
+}
+
+#endif
