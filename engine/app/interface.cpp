@@ -156,7 +156,7 @@ void Interface::start_backend() {
   ImGui_ImplVulkan_Init(&info, pass_.get());
   vk::Recording commands(context_, 0);
   ImGui_ImplVulkan_CreateFontsTexture(commands.handle());
-  commands.submit_and_wait();
+  commands.submit_and_wait(nullptr);
   ImGui_ImplVulkan_DestroyFontUploadObjects();
 }
 

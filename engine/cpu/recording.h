@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstring>
 #include <exception>
+#include <functional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -91,7 +92,8 @@ class Recording : public device::Recording {
     processor_.heed();
   }
 
-  std::vector<device::PassTime> submit_and_wait() override {
+  std::vector<device::PassTime> submit_and_wait(const std::function<void()>& meanwhile) override {
+    if (meanwhile) meanwhile();
     processor_.heed();
     return passes_;
   }

@@ -3,6 +3,7 @@
 
 #include <cassert>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -83,8 +84,11 @@ class Commands {
   void begin_pass(const std::string& name) { recording_->begin_pass(name); }
   void end_pass() { recording_->end_pass(); }
 
-  // Ends recording, runs it, waits. Call once. Returns the time of every pass, in order of recording.
-  std::vector<PassTime> submit_and_wait() { return recording_->submit_and_wait(); }
+  // Ends recording, runs it, waits; `meanwhile` is called once it runs, where it does beside the host. Call once.
+  // Returns the time of every pass, in order of recording.
+  std::vector<PassTime> submit_and_wait(const std::function<void()>& meanwhile = nullptr) {
+    return recording_->submit_and_wait(meanwhile);
+  }
 
  private:
   std::uint32_t checked_workgroups(const ComputePass& pass, std::uint64_t elements) const;

@@ -129,7 +129,7 @@ class Recording {
                     const Memory* indices, std::uint32_t vertices) = 0;
   virtual void begin_pass(const std::string& name) = 0;
   virtual void end_pass() = 0;
-  virtual std::vector<PassTime> submit_and_wait() = 0;
+  virtual std::vector<PassTime> submit_and_wait(const std::function<void()>& meanwhile) = 0;
 };
 
 class Device {

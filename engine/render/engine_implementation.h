@@ -198,10 +198,15 @@ struct Engine::Implementation {
       if (!hidden) hidden.emplace(device, graph);
       irradiance_passes.push_back(hidden->run(*simulation, shadows, set.environments));
     }
-    for (std::uint32_t level = 0; level < simulation->level_count(); ++level) {
-      add(irradiance_passes,
-          irradiance.run(simulation->level(level), level, shadows, hidden ? hidden->hidden(level) : 0, rough));
+    const std::uint32_t count = simulation->level_count();
+    device::Commands commands(device, count);
+    PassStats pass{.name = "irradiance", .count = count};
+    for (std::uint32_t level = 0; level < count; ++level) {
+      pass.bytes += irradiance.record(commands, simulation->level(level), level, shadows,
+                                      hidden ? hidden->hidden(level) : 0, rough);
     }
+    for (const device::PassTime& time : commands.submit_and_wait()) pass.time_ms += time.time_ms;
+    irradiance_passes.push_back(pass);
     simulation->irradiance_changed();
     irradiance_stale = false;
     irradiance_rough = rough;

@@ -107,12 +107,4 @@ void ExchangeMatrix::record_rays(Workspace& work, const LevelBuffers& level, std
       std::uint64_t{count} * rays() * (nodes_per_ray * sizeof(gpu::Box) + faces_per_ray * face_bytes));
 }
 
-std::vector<float> ExchangeMatrix::sky(device::Device& device) const {
-  std::vector<float> sky;
-  for (const glm::uvec2& row : device::download<glm::uvec2>(device, rows_)) {
-    sky.push_back(1.0f - static_cast<float>(row.y - row.x) / static_cast<float>(rays()));
-  }
-  return sky;
-}
-
 }  // namespace quadgraph

@@ -44,9 +44,6 @@ class ExchangeMatrix {
 
   std::uint32_t rays() const { return level_.seen_rays; }
 
-  // Share of each face's rays that met nothing; of what has run.
-  std::vector<float> sky(device::Device& device) const;
-
  private:
   void make_room_for_rays(device::Device& device);
   void record_rays(Workspace& work, const LevelBuffers& level, std::uint32_t first, std::uint32_t count);

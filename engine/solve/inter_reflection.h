@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "engine/solve/exchange_matrix.h"
+#include "engine/solve/sky_levels.h"
 #include "engine/solve/surface_results.h"
 
 namespace quadgraph {
@@ -43,7 +44,7 @@ class InterReflection {
 
   // Brings up to `rows` rows that are behind the shape up to date, all with 0; then the view of the sky on every level.
   // To be called once in a solve. Whether there were any.
-  bool refresh(Workspace& work, std::span<const Level> shape, std::vector<LevelBuffers>& levels, std::uint32_t rows);
+  bool refresh(Workspace& work, std::vector<LevelBuffers>& levels, std::uint32_t rows);
 
   // How far the exchange is behind the shape, as ExchangeMatrix::age; 0 without one.
   std::uint32_t age() const { return matrix_ ? matrix_->age() : 0; }
@@ -87,6 +88,7 @@ class InterReflection {
   const QuadGraph& graph_;
   std::optional<std::uint32_t> level_;
   std::optional<ExchangeMatrix> matrix_;
+  std::optional<SkyLevels> sky_;          // made at first use
   bool any_ = false;                      // some beam may not be zero
   device::Buffer phi_, exitance_, clip_;  // exitance.comp
   std::vector<device::Buffer>

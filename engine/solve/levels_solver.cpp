@@ -307,7 +307,9 @@ void LevelsSolver::submit() {
   for (auto& solver : solvers_) {
     if (solver) solver->record_state();
   }
-  parts_.work.recorder.submit();
+  parts_.work.recorder.submit([&] {
+    if (parts_.resolution) parts_.resolution();
+  });
   for (auto& solver : solvers_) {
     if (solver) solver->take();
   }
@@ -330,7 +332,7 @@ void LevelsSolver::take_error() {
   std::optional<ErrorEstimate> coarser;
   if (finest_ + 2 < solvers_.size() && solvers_[finest_ + 2]) coarser = solvers_[finest_ + 1]->difference();
   ErrorEstimate mesh = mesh_error(solver.difference(), coarser);
-  if (!parts_.resolution.empty()) mesh.whole = std::max(mesh.whole, parts_.resolution[finest_].error);
+  if (parts_.resolution) mesh.whole = std::max(mesh.whole, parts_.resolution()[finest_].error);
   report_.mesh_error = mesh;
   const ErrorEstimate left = report_.algebraic.value_or(ErrorEstimate{});
   report_.error = by_parts([](double a, double b) { return std::hypot(a, b); }, mesh, left);

@@ -3,6 +3,7 @@
 // bounces than that holds; the others look at the state of every level from the host.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -28,8 +29,9 @@ struct SolveParts {
   Coefficients& coefficients;
   Refractions& refractions;
   InterReflection& exchange;
-  bool& scaled;                            // the scale is that of the present q
-  std::span<const Resolution> resolution;  // per level; empty where nothing is known of it
+  bool& scaled;  // the scale is that of the present q
+  // What elements resolve, per level, which may take a while the first time; null where nothing is known of it.
+  std::function<std::span<const Resolution>()> resolution;
 };
 
 class LevelsSolver {

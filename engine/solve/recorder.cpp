@@ -40,11 +40,11 @@ void Recorder::fill(const device::Buffer& target, std::uint32_t value) {
   commands().fill(target, value);
 }
 
-void Recorder::submit() {
-  if (!commands_) return;
+void Recorder::submit(const std::function<void()>& meanwhile) {
+  if (!commands_) return meanwhile ? meanwhile() : void();
   const std::unique_ptr<device::Commands> running = std::move(commands_);
   timed_ = 0;
-  for (const device::PassTime& time : running->submit_and_wait()) stats(time.name).time_ms += time.time_ms;
+  for (const device::PassTime& time : running->submit_and_wait(meanwhile)) stats(time.name).time_ms += time.time_ms;
 }
 
 void Recorder::abandon() {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -46,8 +47,8 @@ class Recorder {
             std::uint64_t target_offset = 0);
   void fill(const device::Buffer& target, std::uint32_t value);
 
-  // Runs what is recorded and waits.
-  void submit();
+  // Runs what is recorded and waits; `meanwhile` as Commands::submit_and_wait.
+  void submit(const std::function<void()>& meanwhile = nullptr);
 
   // Drops what is recorded, and the passes counted so far.
   void abandon();

@@ -200,7 +200,7 @@ struct Simulation::Implementation {
     solved.reset();
     work.recorder.clear();
     const OperatorKey key = key_of(options);
-    relight(exchange.refresh(work, shape.levels(), levels, options.exchange_rows));
+    relight(exchange.refresh(work, levels, options.exchange_rows));
     make_room(key, options);
     const auto with = [&](SolverKind solver) { return run(key, options, solver); };
     SolveReport report = options.solver == SolverKind::automatic
@@ -310,8 +310,10 @@ struct Simulation::Implementation {
   }
 
   SolveReport run(const OperatorKey& key, const SolveOptions& options, SolverKind solver) {
-    std::span<const Resolution> known;
-    if (key.method == Method::fem && options.source == Source::buried) known = resolution_with(key.model);
+    std::function<std::span<const Resolution>()> known;
+    if (key.method == Method::fem && options.source == Source::buried) {
+      known = [&] { return std::span<const Resolution>(resolution_with(key.model)); };
+    }
     const SolveParts parts{work,         levels,      beams,    walks,  operators, results,
                            coefficients, refractions, exchange, scaled, known};
     return LevelsSolver(parts, key, options, solver).run();

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cassert>
+#include <exception>
 
 #include "engine/vk/pipeline.h"
 
@@ -94,6 +95,7 @@ void Recording::show_to(VkPipelineStageFlags2 stages, VkAccessFlags2 access) {
 void Recording::barrier() {
   show_to(all_stages, all_access);
   unfinished_ = true;
+  stamped_ = false;
 }
 
 void Recording::transition(const ImageMemory& image, VkImageLayout from, VkImageLayout to) {
@@ -115,6 +117,7 @@ void Recording::transition(const ImageMemory& image, VkImageLayout from, VkImage
   info.pImageMemoryBarriers = &barrier;
   vkCmdPipelineBarrier2(parts_->commands, &info);
   unfinished_ = true;
+  stamped_ = false;
 }
 
 void Recording::copy(const device::Memory& source, const device::Memory& target, std::uint64_t bytes,
@@ -216,14 +219,21 @@ void Recording::draw(const device::DrawImages& target, const device::Viewport& v
 
 void Recording::begin_pass(const std::string& name) {
   assert(passes_.size() < max_passes_);
-  const auto query = static_cast<std::uint32_t>(2 * passes_.size());
   passes_.push_back({name, 0});
   if (host_timed_) {
     flush();
     pass_start_ = std::chrono::steady_clock::now();
   } else {
-    vkCmdWriteTimestamp2(parts_->commands, all_stages, parts_->queries.get(), query);
+    if (!stamped_) stamp();
+    stamps_.push_back({queries_ - 1, 0});
   }
+}
+
+// A stamp waits for all before it and costs a device some microseconds: a pass begins with that by which the one before
+// has ended.
+void Recording::stamp() {
+  vkCmdWriteTimestamp2(parts_->commands, all_stages, parts_->queries.get(), queries_++);
+  stamped_ = true;
 }
 
 void Recording::end_pass() {
@@ -232,8 +242,8 @@ void Recording::end_pass() {
     const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - pass_start_;
     passes_.back().time_ms = elapsed.count();
   } else {
-    const auto query = static_cast<std::uint32_t>(2 * passes_.size() - 1);
-    vkCmdWriteTimestamp2(parts_->commands, all_stages, parts_->queries.get(), query);
+    if (!stamped_) stamp();
+    stamps_.back().end = queries_ - 1;
   }
 }
 
@@ -241,7 +251,7 @@ void Recording::end_pass() {
 void Recording::flush() {
   if (!unfinished_) return;
   unfinished_ = false;
-  end_and_run();
+  end_and_run(nullptr);
   check(vkResetCommandPool(context_.device(), parts_->pool.get(), 0), "vkResetCommandPool");
   begin();
 }
@@ -264,7 +274,7 @@ void Recording::ask_for(VkFence fence) const {
 }
 
 // Updates that wait come first.
-void Recording::end_and_run() {
+void Recording::end_and_run(const std::function<void()>& meanwhile) {
   show_to(VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
   const std::unique_ptr<device::Recording> updates = context_.take_updates();
   std::array<VkCommandBufferSubmitInfo, 2> infos{};
@@ -277,26 +287,33 @@ void Recording::end_and_run() {
   submit.pCommandBufferInfos = infos.data();
   const VkFence fence = parts_->fence.get();
   check(vkQueueSubmit2(context_.queue(), 1, &submit, fence), "vkQueueSubmit2");
+  std::exception_ptr thrown;
+  try {
+    if (meanwhile) meanwhile();
+  } catch (...) {
+    thrown = std::current_exception();
+  }
   if (!host_timed_) ask_for(fence);
   check(vkWaitForFences(context_.device(), 1, &fence, VK_TRUE, UINT64_MAX), "vkWaitForFences");
   check(vkResetFences(context_.device(), 1, &fence), "vkResetFences");
+  if (thrown) std::rethrow_exception(thrown);
   context_.heed();
 }
 
-std::vector<device::PassTime> Recording::submit_and_wait() {
-  end_and_run();
+std::vector<device::PassTime> Recording::submit_and_wait(const std::function<void()>& meanwhile) {
+  end_and_run(meanwhile);
   return read_times();
 }
 
 std::vector<device::PassTime> Recording::read_times() {
   if (passes_.empty() || host_timed_) return passes_;
-  std::vector<std::uint64_t> ticks(2 * passes_.size());
+  std::vector<std::uint64_t> ticks(queries_);
   check(vkGetQueryPoolResults(context_.device(), parts_->queries.get(), 0, static_cast<std::uint32_t>(ticks.size()),
                               ticks.size() * sizeof(std::uint64_t), ticks.data(), sizeof(std::uint64_t),
                               VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
         "vkGetQueryPoolResults");
   for (std::size_t i = 0; i < passes_.size(); ++i) {
-    const double elapsed = static_cast<double>(ticks[2 * i + 1] - ticks[2 * i]);
+    const double elapsed = static_cast<double>(ticks[stamps_[i].end] - ticks[stamps_[i].begin]);
     passes_[i].time_ms = elapsed * context_.limits().timestampPeriod * 1e-6;
   }
   return passes_;

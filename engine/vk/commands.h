@@ -43,7 +43,7 @@ class Recording : public device::Recording {
             const void* push, const device::Memory* indices, std::uint32_t vertices) override;
   void begin_pass(const std::string& name) override;
   void end_pass() override;
-  std::vector<device::PassTime> submit_and_wait() override;
+  std::vector<device::PassTime> submit_and_wait(const std::function<void()>& meanwhile) override;
 
   VkCommandBuffer handle() const { return parts_->commands; }
 
@@ -62,7 +62,8 @@ class Recording : public device::Recording {
   void bind(VkPipelineBindPoint point, const device::Pipeline& pass, const void* push);
   void begin();
   VkCommandBufferSubmitInfo finished();
-  void end_and_run();
+  void stamp();
+  void end_and_run(const std::function<void()>& meanwhile);
   void ask_for(VkFence fence) const;
   void flush();
   std::vector<device::PassTime> read_times();
@@ -72,8 +73,14 @@ class Recording : public device::Recording {
   std::uint32_t max_passes_ = 0;
   bool host_timed_ = false;
   bool unfinished_ = false;  // something has been recorded since the last flush
+  bool stamped_ = false;     // nothing has since the last stamp
+  std::uint32_t queries_ = 0;
   std::chrono::steady_clock::time_point pass_start_;
   std::vector<device::PassTime> passes_;
+  struct Stamps {
+    std::uint32_t begin, end;  // queries
+  };
+  std::vector<Stamps> stamps_;  // by pass
 };
 
 }  // namespace quadgraph::vk

@@ -102,7 +102,7 @@ void Context::finish_updates() noexcept {
   const std::unique_ptr<device::Recording> last = take_updates();
   if (!last) return;
   try {
-    last->submit_and_wait();
+    last->submit_and_wait(nullptr);
   } catch (const DeviceError&) {  // a device that is lost; what comes next says so
   }
 }

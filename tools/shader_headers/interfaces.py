@@ -109,7 +109,8 @@ def stage_facts(texts: Texts, shader: Shader) -> str:
     text = texts[shader.file]
     if shader.file.endswith(".frag"):
         discards = "discard;" in text
-        return f", .derivatives = {str(asks_derivatives(texts[shader.file])).lower()}, .discards = {str(discards).lower()}"
+        asks = asks_derivatives(texts[shader.file])
+        return f", .derivatives = {str(asks).lower()}, .discards = {str(discards).lower()}"
     if not shader.file.endswith(".vert"):
         return ""
     variables = stage_variables(text, "out")

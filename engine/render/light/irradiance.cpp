@@ -1,6 +1,5 @@
 #include "engine/render/light/irradiance.h"
 
-#include "engine/device/commands.h"
 #include "interface/light/irradiance.comp.h"
 
 namespace quadgraph {
@@ -30,8 +29,8 @@ const device::ComputePass& IrradiancePass::pass(bool shaped) {
   return *shaped_;
 }
 
-PassStats IrradiancePass::run(const LevelBuffers& buffers, std::uint32_t level, const ShadowMaps& shadows,
-                              std::uint64_t hidden, bool rough) {
+std::uint64_t IrradiancePass::record(device::Commands& commands, const LevelBuffers& buffers, std::uint32_t level,
+                                     const ShadowMaps& shadows, std::uint64_t hidden, bool rough) {
   const std::uint32_t subdivision = subdivision_of(level, buffers.face_count, rough);
   const gpu::IrradiancePush push{.vertices = buffers.vertices.address(),
                                  .faces = buffers.faces.address(),
@@ -46,15 +45,12 @@ PassStats IrradiancePass::run(const LevelBuffers& buffers, std::uint32_t level, 
                                  .face_count = buffers.face_count,
                                  .light_count = shadows.light_count(),
                                  .subdivision = subdivision};
-  device::Commands commands(device_, 1);
   commands.begin_pass("irradiance");
   commands.dispatch(pass(shadows.shaped()), push, buffers.face_count);
   commands.end_pass();
-  const auto times = commands.submit_and_wait();
   // Per face: three indices, three corners, q; per light its quarters, and four texels per sample.
   const std::uint64_t light_bytes = sizeof(float) * FACE_QUARTERS + 16ull * subdivision * subdivision;
-  return {times[0].name, times[0].time_ms,
-          buffers.face_count * (12 + 36 + 12 + 4 + shadows.light_count() * light_bytes), 1};
+  return buffers.face_count * (12 + 36 + 12 + 4 + shadows.light_count() * light_bytes);
 }
 
 }  // namespace quadgraph

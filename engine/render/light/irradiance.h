@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "engine/base/pass_stats.h"
+#include "engine/device/commands.h"
 #include "engine/device/pipeline.h"
 #include "engine/render/light/shadow_maps.h"
 #include "engine/solve/level_buffers.h"
@@ -23,8 +23,9 @@ class IrradiancePass {
   // `level` counts from the finest, 0; faces of coarser levels are sampled more finely. `hidden` as
   // HiddenSky::hidden. `rough`: in motion, coarser levels as the finest, and of many faces, which are small,
   // each quarter by one sample instead of four.
-  PassStats run(const LevelBuffers& buffers, std::uint32_t level, const ShadowMaps& shadows, std::uint64_t hidden = 0,
-                bool rough = false);
+  // Returns the bytes it moves.
+  std::uint64_t record(device::Commands& commands, const LevelBuffers& buffers, std::uint32_t level,
+                       const ShadowMaps& shadows, std::uint64_t hidden = 0, bool rough = false);
 
  private:
   const device::ComputePass& pass(bool shaped);

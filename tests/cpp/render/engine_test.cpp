@@ -123,7 +123,7 @@ TEST_CASE("a picture shows what was solved, and says how it was made") {
   for (const char* key : {"device", "energy balance", "error", "iterations", "residual"}) CHECK(!value(key).empty());
 
   const auto passes = engine.passes();
-  for (const char* name : {"shadow maps", "irradiance", "uncollided", "gathered exitance", "surface", "gather"}) {
+  for (const char* name : {"shadow maps", "irradiance", "uncollided", "gathered exitance", "visibility", "gather"}) {
     const auto pass = std::find_if(passes.begin(), passes.end(), [&](const auto& p) { return p.name == name; });
     REQUIRE_MESSAGE(pass != passes.end(), name);
     CHECK(pass->time_ms > 0);

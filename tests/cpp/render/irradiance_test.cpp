@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "engine/base/error.h"
+#include "engine/device/commands.h"
 #include "engine/optics/fresnel.h"
 #include "tests/cpp/fixtures/checked_context.h"
 #include "tests/cpp/fixtures/one_body.h"
@@ -18,6 +19,14 @@ namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
 
+void run_irradiance(device::Device& context, const LevelBuffers& level, std::uint32_t number, const ShadowMaps& shadows,
+                    bool rough = false) {
+  IrradiancePass pass(context);
+  device::Commands commands(context, 1);
+  pass.record(commands, level, number, shadows, 0, rough);
+  commands.submit_and_wait();
+}
+
 std::vector<glm::vec3> irradiance(device::Device& context, const Shape& shape, const std::vector<Light>& lights,
                                   float eta) {
   const DisplayBuffers mesh = upload_as_display(context, shape);
@@ -25,7 +34,7 @@ std::vector<glm::vec3> irradiance(device::Device& context, const Shape& shape, c
   const LevelBuffers level = upload_as_level(context, shape, lights.size(), refractions);
   ShadowMaps shadows(context);
   shadows.update(mesh, {lights, bounding_sphere(shape.vertices)});
-  IrradiancePass(context).run(level, 0, shadows);
+  run_irradiance(context, level, 0, shadows);
   return device::download<glm::vec3>(context, level.q);
 }
 
@@ -155,7 +164,7 @@ TEST_CASE("many lights bring what one brings, within the memory of their maps") 
     ShadowMaps shadows(checked.context);
     shadows.update(mesh, {lights, bounding_sphere(shape.vertices)});
     CHECK(checked.context.allocated_by_purpose().at("shadows") < most_map_bytes + (64u << 20));
-    IrradiancePass(checked.context).run(level, 0, shadows);
+    run_irradiance(checked.context, level, 0, shadows);
     return entered(shape, device::download<glm::vec3>(checked.context, level.q)).x;
   };
   CHECK(with(150) == doctest::Approx(with(1)).epsilon(1e-3));
@@ -178,7 +187,7 @@ TEST_CASE("a shadow map is drawn again only where its view or the mesh has chang
     CHECK(shadows.update(mesh, set).count == drawn);
     const OneBody refractions(context, 1);
     const LevelBuffers level = upload_as_level(context, present, lights.size(), refractions);
-    IrradiancePass(context).run(level, 0, shadows);
+    run_irradiance(context, level, 0, shadows);
     CHECK(device::download<glm::vec3>(context, level.q) == irradiance(context, present, lights, 1.0f));
   };
   check({sun(0), lamp}, shape, 2);
@@ -202,7 +211,7 @@ TEST_CASE("in motion coarser levels are sampled as the finest is, and many faces
     const LevelBuffers level = upload_as_level(context, shape, 1, refractions);
     ShadowMaps shadows(context);
     shadows.update(upload_as_display(context, shape), {sun, bounding_sphere(shape.vertices)});
-    IrradiancePass(context).run(level, number, shadows, 0, rough);
+    run_irradiance(context, level, number, shadows, rough);
     return device::download<glm::vec3>(context, level.q);
   };
   Shape few = sphere({0, 0, 0}, 10, 3), many = sphere({0, 0, 0}, 10, 6);
@@ -231,7 +240,7 @@ TEST_CASE("every light has its own quarters, which make up q") {
   const LevelBuffers level = upload_as_level(context, shape, lights.size(), refractions);
   ShadowMaps shadows(context);
   shadows.update(upload_as_display(context, shape), {lights, bounding_sphere(shape.vertices)});
-  IrradiancePass(context).run(level, 0, shadows);
+  run_irradiance(context, level, 0, shadows);
   const auto q = device::download<glm::vec3>(context, level.q);
   const auto shares = device::download<float>(context, level.beam_q);
   REQUIRE(shares.size() == lights.size() * FACE_QUARTERS * shape.faces.size());
@@ -332,7 +341,7 @@ TEST_CASE("ambient light comes from the share of the sky that a face sees") {
   level.sky = device::upload<float>(context, sky, "sky");
   ShadowMaps shadows(context);
   shadows.update(mesh, {{&ambient, 1}, bounding_sphere(shape.vertices)});
-  IrradiancePass(context).run(level, 0, shadows);
+  run_irradiance(context, level, 0, shadows);
   const auto q = device::download<glm::vec3>(context, level.q);
   const auto entering = static_cast<float>(diffuse_transmittance(1.3));
   for (std::size_t f = 0; f < q.size(); ++f) {
