@@ -24,10 +24,6 @@ std::int32_t last_pixel(std::int32_t at) {
 // Values of one fragment: `b` are weights in the window, which add up to 1.
 void interpolate(const Triangle& t, const std::array<double, 3>& b, std::uint32_t locations, std::uint32_t flat,
                  float* result) {
-  if (flat == (1u << locations) - 1) {
-    std::copy_n(t.flat, std::size_t{4} * locations, result);
-    return;
-  }
   std::array<float, 3> weight;
   double sum = 0;
   for (std::size_t k = 0; k < 3; ++k) sum += b[k] * t.inverse_w[k];
@@ -108,7 +104,12 @@ void Batch::shade(std::uint64_t texel, const Keep& keep) {
   count_ = 0;
 }
 
-Tile::Tile(const Frame& frame) : frame_(frame), depth_(image(frame.target.depth)), batch_(frame) {}
+Tile::Tile(const Frame& frame)
+    : frame_(frame),
+      depth_(image(frame.target.depth)),
+      batch_(frame),
+      alike_(frame.pass.fragment != nullptr && !frame.pass.options.fragment->derivatives &&
+             frame.pass.options.vertex->flat == (1u << frame.locations()) - 1) {}
 
 Drawn Tile::drawn(const Triangle& t) const {
   Drawn drawn{};
@@ -185,6 +186,7 @@ void Tile::draw_seen(const DrawMemory& memory) {
     });
     if (any(seen)) drawn_.push_back(drawn);
   });
+  if (alike_) return write_alike();
   const auto keep = [](std::uint32_t, float) {};
   for (std::uint32_t y = 0; y < height_; ++y) {
     const std::uint32_t end = y * tile_side + width_;
@@ -201,6 +203,28 @@ void Tile::draw_seen(const DrawMemory& memory) {
     }
   }
   batch_.shade(texel_, keep);
+}
+
+// What is seen, where all fragments of a triangle are the same: each is shaded once.
+void Tile::write_alike() {
+  const std::size_t images = frame_.target.colours.size();
+  alike_colours_.assign(4 * images * (drawn_.size() + 1), 0.0f);  // the last of nothing
+  for (std::size_t k = 0; k < drawn_.size(); ++k) {
+    bool kept = true;
+    frame_.pass.fragment(frame_.push, drawn_[k].triangle->front, drawn_[k].triangle->flat, nullptr, nullptr, 1,
+                         alike_colours_.data() + 4 * images * k, &kept, frame_.pass.options.variant);
+  }
+  for (std::size_t i = 0; i < images; ++i) {
+    const ImageMemory& target = image(frame_.target.colours[i]);
+    const std::uint32_t words = target.words();
+    for (std::uint32_t y = 0; y < height_; ++y) {
+      float* texels = target.texels() + words * (texel_ + std::uint64_t{y} * target.options.width);
+      for (std::uint32_t x = 0; x < width_; ++x) {
+        const std::size_t seen = std::min<std::size_t>(seen_[y * tile_side + x], drawn_.size());
+        std::copy_n(alike_colours_.data() + 4 * (images * seen + i), words, texels + std::size_t{words} * x);
+      }
+    }
+  }
 }
 
 // Shades all that is nearer than what came before, as fragments may be discarded.

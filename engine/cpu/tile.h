@@ -53,6 +53,7 @@ class Tile {
   Drawn drawn(const Triangle& t) const;
   void draw_depths(const DrawMemory& memory);
   void draw_seen(const DrawMemory& memory);
+  void write_alike();
   void draw_in_order(const DrawMemory& memory);
   void leave_empty(std::uint32_t pixel_of_tile, std::uint32_t count) const;
   bool is_empty(const DrawMemory& memory) const;
@@ -62,11 +63,13 @@ class Tile {
   const Frame& frame_;
   ImageMemory& depth_;
   Batch batch_;
+  const bool alike_;  // the fragment shader cannot tell the fragments of a triangle apart
   std::uint32_t number_ = 0, left_ = 0, top_ = 0, width_ = 0, height_ = 0;
   std::uint64_t texel_ = 0;  // the first
   alignas(16) std::array<float, pixels> depths_;
   alignas(16) std::array<std::uint32_t, pixels> seen_;  // by pixel: into drawn_, or none
   std::vector<Drawn> drawn_;
+  std::vector<float> alike_colours_;  // by drawn_
 };
 
 }  // namespace quadgraph::cpu

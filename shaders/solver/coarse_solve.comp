@@ -31,20 +31,7 @@ Field residual_at(CoherentFields x, Entry row_sum, uint i) {
   uint end = push.rows.slice_offset.at[slice + 1u];
   Field own = x.at[i];
   Field sum = times(row_sum, own);
-  uint e = push.rows.slice_offset.at[slice] + i % SLICE_ROWS;
-#ifndef QG_PROCESSOR
-  // As in row_times (rows.glsl).
-  for (; e + 3u * SLICE_ROWS < end; e += 4u * SLICE_ROWS) {
-    StoredEntry a = stored_entry(push.rows, e), b = stored_entry(push.rows, e + SLICE_ROWS);
-    StoredEntry c = stored_entry(push.rows, e + 2u * SLICE_ROWS), d = stored_entry(push.rows, e + 3u * SLICE_ROWS);
-    Field x_a = x.at[column_of(a)], x_b = x.at[column_of(b)], x_c = x.at[column_of(c)], x_d = x.at[column_of(d)];
-    sum = add(sum, times(entry_in(a), difference(x_a, own)));
-    sum = add(sum, times(entry_in(b), difference(x_b, own)));
-    sum = add(sum, times(entry_in(c), difference(x_c, own)));
-    sum = add(sum, times(entry_in(d), difference(x_d, own)));
-  }
-#endif
-  for (; e < end; e += SLICE_ROWS) {
+  for (uint e = push.rows.slice_offset.at[slice] + i % SLICE_ROWS; e < end; e += SLICE_ROWS) {
     StoredEntry stored = stored_entry(push.rows, e);
     sum = add(sum, times(entry_in(stored), difference(x.at[column_of(stored)], own)));
   }

@@ -1,12 +1,10 @@
 #include "engine/render/picture/rasteriser.h"
 
 #include <algorithm>
-#include <array>
-#include <numbers>
 #include <numeric>
 #include <span>
 
-#include "engine/optics/fresnel.h"
+#include "engine/render/picture/surface_scene.h"
 #include "interface/display/false_colour.frag.h"
 #include "interface/display/false_colour.vert.h"
 #include "interface/display/gather.comp.h"
@@ -25,91 +23,6 @@ namespace {
 constexpr std::uint32_t layers_tile_pixels = 512, seen_tile_pixels = 1024;
 // Of pictures of several frames, for each view ray: what is seen through them differs much.
 constexpr std::uint32_t facets_where_clear = 4;
-
-gpu::RoughnessMapRef roughness_map(const PlacedRoughness* placed) {
-  if (placed == nullptr) return {};
-  return {.rest = placed->rest.address(),
-          .texels = placed->texels.address(),
-          .image = placed->image,
-          .box = placed->box,
-          .roughness = placed->roughness};
-}
-
-gpu::NormalMapRef normal_map(const PlacedNormals* placed) {
-  if (placed == nullptr) return {};
-  return {.rest = placed->rest.address(),
-          .texels = placed->texels.address(),
-          .image = placed->image,
-          .box = placed->box,
-          .strength = placed->strength,
-          .by_mesh = placed->by_mesh ? 1u : 0u};
-}
-
-gpu::SurfaceScene scene(const RasterInput& input, const Camera& camera) {
-  gpu::SurfaceScene scene{.clip_from_offset = camera.clip_from_offset,
-                          .origin = camera.origin,
-                          .eye = camera.seen_from(),
-                          .reach = camera.reach,
-                          .eta = 0,
-                          .radiance_norm = 0,
-                          .roughness = input.roughness,
-                          .mirrored = input.mirrored,
-                          .light_count = input.shadows.light_count(),
-                          .vertices = input.mesh.vertices.address(),
-                          .normals = input.mesh.normals.address(),
-                          .face = input.mesh.face.address(),
-                          .barycentric = input.mesh.barycentric.address(),
-                          .faces = input.finest.faces.address(),
-                          .face_kinds = input.finest.face_kind.address(),
-                          .exitance = input.vertex_exitance.address(),
-                          .unscattered = input.vertex_unscattered.address(),
-                          .sky = input.finest.sky.address(),
-                          .lights = input.shadows.lights().address(),
-                          .shapes = input.shadows.shapes().address(),
-                          .views = input.shadows.views().address(),
-                          .triangles = input.mesh.triangles.address(),
-                          .triangle_face = 0,
-                          .points = 0,
-                          .scale = 0,
-                          .share = 0,
-                          .elsewhere = {},
-                          .solid = {},
-                          .roughness_map = roughness_map(input.placed_roughness),
-                          .normal_map = normal_map(input.placed_normals)};
-  if (input.gather != nullptr) {
-    scene.triangle_face = input.gather->triangle_face.address();
-    scene.points = input.gather->field.points().address();
-    scene.scale = input.gather->field.scale().address();
-    scene.solid = input.gather->field.solid();
-    if (input.gather->share != nullptr) scene.share = input.gather->share->address();
-    const device::Buffer* elsewhere = input.gather->elsewhere;
-    for (std::uint64_t k = 0; elsewhere != nullptr && k < gpu::DOUBT_SAMPLES; ++k) {
-      scene.elsewhere[k] = elsewhere->address() + k * (elsewhere->size() / gpu::DOUBT_SAMPLES);
-    }
-  }
-  return scene;
-}
-
-gpu::SurfaceScene scene(const PathInput& input, const Camera& camera) {
-  gpu::SurfaceScene scene{};
-  scene.clip_from_offset = camera.clip_from_offset;
-  scene.origin = camera.origin;
-  scene.eye = camera.seen_from();
-  scene.reach = camera.reach;
-  scene.eta = input.eta;
-  scene.roughness = input.roughness;
-  scene.mirrored = input.mirrored;
-  scene.roughness_map = roughness_map(input.placed_roughness);
-  scene.normal_map = normal_map(input.placed_normals);
-  scene.radiance_norm = static_cast<float>(radiance_norm(input.eta));
-  scene.light_count = input.shadows.light_count();
-  scene.vertices = input.mesh.vertices.address();
-  scene.normals = input.mesh.normals.address();
-  scene.lights = input.shadows.lights().address();
-  scene.shapes = input.shadows.shapes().address();
-  scene.views = input.shadows.views().address();
-  return scene;
-}
 
 // Of what draws layers of samples.
 device::GraphicsOptions layers_options(const device::Shader& vertex, const device::Shader& fragment,
@@ -136,48 +49,47 @@ struct Rasteriser::Tile {
   std::uint64_t samples() const { return 4ull * width * height; }
 };
 
-// What tiles are drawn into: one kind of images.
+// What tiles are drawn into: images of one kind, which shaders read in place or copies of.
 struct Rasteriser::Targets {
-  Targets(device::Device& device, device::Format format, std::uint32_t images_each, std::uint32_t most)
-      : device_(device), format_(format), images_each_(images_each), tile_pixels(most) {}
+  Targets(device::Device& its_device, device::Format its_format, std::uint32_t its_images, std::uint32_t most)
+      : device(its_device), format(its_format), images_each(its_images), tile_pixels(most) {}
 
   // For tiles of a picture of that size.
   void make_room(std::uint32_t picture_width, std::uint32_t picture_height) {
     const std::uint32_t wide = std::max(width, std::min(picture_width, tile_pixels)),
                         high = std::max(height, std::min(picture_height, tile_pixels));
-    if (depth && wide == width && high == height) return;
+    if (made && wide == width && high == height) return;
+    made = false;
     width = wide;
     height = high;
     images.clear();
     samples.clear();
-    depth.emplace(device_, image_options(device::Format::depth32_float), "picture/depth");
-    for (std::uint32_t k = 0; k < images_each_; ++k) {
-      images.emplace_back(device_, image_options(format_), "picture/samples");
+    depth.emplace(device, image_options(device::Format::depth32_float), "picture/depth");
+    for (std::uint32_t k = 0; k < images_each; ++k) {
+      images.emplace_back(device, image_options(format), "picture/samples");
       if (in_place()) continue;
-      samples.emplace_back(device_, bytes_of(4ull * width * height), device::Place::device, "picture/samples");
+      samples.emplace_back(device, bytes_of(4ull * width * height), device::Place::device, "picture/samples");
     }
+    made = true;
   }
 
-  device::ImageOptions image_options(device::Format format) const { return {format, 2 * width, 2 * height}; }
-  bool in_place() const { return images.front().address() != 0; }  // images are read, not copies of them
-  std::uint64_t bytes_of(std::uint64_t count) const {              // samples, in one image
-    return (format_ == device::Format::rgba32_float ? 16 : 4) * count;
+  device::ImageOptions image_options(device::Format of) const { return {of, 2 * width, 2 * height}; }
+  bool in_place() const { return images.front().address() != 0; }
+  std::uint64_t bytes_of(std::uint64_t count) const {  // samples, in one image
+    return (format == device::Format::rgba32_float ? 16 : 4) * count;
   }
 
   // Where a shader reads the samples of image k.
   std::uint64_t address(std::size_t k) const { return in_place() ? images[k].address() : samples[k].address(); }
 
- private:
-  device::Device& device_;
-  device::Format format_;
-  std::uint32_t images_each_;
-
- public:
-  const std::uint32_t tile_pixels;      // per side, at most
-  std::uint32_t width = 0, height = 0;  // pixels of 2 x 2 samples
+  device::Device& device;
+  const device::Format format;
+  const std::uint32_t images_each, tile_pixels;  // pixels per side, at most
+  bool made = false;                             // all of what follows, for the next
+  std::uint32_t width = 0, height = 0;           // pixels of 2 x 2 samples
   std::vector<device::Image> images;
   std::optional<device::Image> depth;
-  std::vector<device::Buffer> samples;  // the same, of what a tile covers, where images are not read in place
+  std::vector<device::Buffer> samples;  // of what a tile covers, where images are not read in place
 };
 
 Rasteriser::Rasteriser(device::Device& device)
@@ -323,7 +235,7 @@ void Rasteriser::write_scene(const gpu::SurfaceScene& scene) {
 
 std::vector<PassStats> Rasteriser::run(const PathInput& input, const Camera& camera, std::uint32_t width,
                                        std::uint32_t height) {
-  write_scene(scene(input, camera));
+  write_scene(surface_scene(input, camera));
   picture_.has_doubt = false;
   auto passes = run_tiles(*layers_, width, height,
                           [&](device::Commands& commands, const Tile& tile) { record(commands, input, tile); });
@@ -334,7 +246,7 @@ std::vector<PassStats> Rasteriser::run(const PathInput& input, const Camera& cam
 
 std::vector<PassStats> Rasteriser::run(const RasterInput& input, const Camera& camera, std::uint32_t width,
                                        std::uint32_t height) {
-  write_scene(scene(input, camera));
+  write_scene(surface_scene(input, camera));
   picture_.has_doubt = input.gather != nullptr && input.gather->share != nullptr;
   auto passes = run_tiles(*seen_, width, height,
                           [&](device::Commands& commands, const Tile& tile) { record(commands, input, tile); });

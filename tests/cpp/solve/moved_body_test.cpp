@@ -1,5 +1,8 @@
 // A body whose vertices move: what it sees of itself, its operators and its source follow.
+#include <algorithm>
+
 #include "engine/base/error.h"
+#include "engine/reference/sky.h"
 #include "tests/cpp/fixtures/exchange_fixtures.h"
 #include "tests/cpp/fixtures/solve_fixtures.h"
 
@@ -82,6 +85,27 @@ TEST_CASE("a body whose vertices have moved answers as one baked in that shape")
     const SurfaceField expected = fresh.simulation.surface_field();
     CHECK(relative_difference(found.position, expected.position) < 1e-6);
     CHECK(relative_difference(found.exitance, expected.exitance) < 1e-4);
+  }
+}
+
+TEST_CASE("levels finer and coarser than the one with the matrix see the sky as the reference carries it to them") {
+  MovedBody body({facing_slabs(4, 10.0f, 2.0f, 4.0f), baked(facing_slabs(3, 10.0f, 2.0f, 4.0f)),
+                  facing_slabs(2, 10.0f, 2.0f, 4.0f)});
+  const auto sky = [&](std::uint32_t i) {
+    return device::download<float>(body.device.context, body.simulation.level(i).sky);
+  };
+  const std::vector<float> at_rest = sky(1);
+  body.move(bent);
+  body.solve(accurate(Method::fem));
+  CHECK(relative_difference(sky(1), at_rest) > 1e-3);
+  const auto expected = sky_of_levels(body.graph.levels(), 1, sky(1));
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    CAPTURE(i);
+    const std::vector<float> found = sky(i);
+    CHECK(relative_difference(found, expected[i]) < 1e-6);
+    const auto [least, most] = std::ranges::minmax(found);
+    CHECK(least < 0.95f);
+    CHECK(most <= 1.000001f);
   }
 }
 

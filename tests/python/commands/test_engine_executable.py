@@ -62,7 +62,7 @@ def test_exr_and_json(tmp_path: Path):
     assert report["solve"]["energy"]["entered_W"] == pytest.approx([4, 8, 12], rel=1e-4)  # a face of 4 mm^2
     assert report["metadata"]["lights"] == light + " point:1,1,50:0"
     assert report["metadata"]["camera"].startswith("view -30,-20,9,")
-    assert {"shadow maps", "irradiance", "surface", "resolve"} <= {entry["name"] for entry in report["passes"]}
+    assert {"shadow maps", "irradiance", "visibility", "shading"} <= {entry["name"] for entry in report["passes"]}
     assert report["device_bytes"]["peak"] >= report["device_bytes"]["now"] > 0
     assert report["wall_ms"]["total"] > 0
 

@@ -32,7 +32,8 @@ STAGES = {
     "source": ("source walk", "surface share", "right-hand side"),
     "exitance": ("exitance", "energy", "path field"),
     "picture": (
-        *("gather points", "uncollided", "gathered exitance", "gather scale", "surface", "resolve", "gather"),
+        *("gather points", "uncollided", "gathered exitance", "gather scale", "visibility", "shading", "gather"),
+        *("surface", "resolve"),
         "path tracing",
         "converging picture",
     ),
