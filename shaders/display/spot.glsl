@@ -96,7 +96,7 @@ vec3 normal_place(uvec3 at, vec3 l) {
 }
 
 // Makes `roughness` that of a point, and returns the normal by which it is shaded, unit: n, as maps lean it. `right`
-// and `below`: barycentric coordinates a pixel away.
+// and `below`: barycentric coordinates a sample away, as pictures of several frames are as sharp as that.
 vec3 mapped(uvec3 at, vec3 l, vec3 right, vec3 below, vec3 n) {
   if (has_roughness_map()) {
     vec3 rest = roughness_place(at, l);
@@ -124,8 +124,8 @@ Spot spot_of(Pixel pixel, uint triangle, uint samples) {
   vec3 n = normalize(weighed(spot.l, SCENE.normals.at[at.x], SCENE.normals.at[at.y], SCENE.normals.at[at.z]));
   roughness = SCENE.roughness;
   if (has_roughness_map() || has_normal_map()) {
-    vec3 right = weights_at(corners, place + vec2(2.0 / float(push.picture_width), 0.0));
-    vec3 below = weights_at(corners, place - vec2(0.0, 2.0 / float(push.picture_height)));
+    vec3 right = weights_at(corners, place + vec2(1.0 / float(push.picture_width), 0.0));
+    vec3 below = weights_at(corners, place - vec2(0.0, 1.0 / float(push.picture_height)));
     n = mapped(at, spot.l, right, below, n);
   }
   vec3 first = SCENE.vertices.at[at.x];
