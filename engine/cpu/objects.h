@@ -34,12 +34,11 @@ struct ImageMemory : device::ImageMemory {
     allocated = bytes_of(wanted);
   }
 
-  static std::uint32_t texel_bytes(device::Format format) { return format == device::Format::rgba32_float ? 16 : 4; }
   static std::uint64_t bytes_of(const device::ImageOptions& image) {
-    return std::uint64_t{texel_bytes(image.format)} * image.width * image.height * image.layers;
+    return std::uint64_t{device::texel_bytes(image.format)} * image.width * image.height * image.layers;
   }
 
-  std::uint32_t texel_bytes() const { return texel_bytes(options.format); }
+  std::uint32_t texel_bytes() const { return device::texel_bytes(options.format); }
   std::uint32_t words() const { return texel_bytes() / 4; }  // of a texel
   float* texels() const { return static_cast<float*>(memory.get()); }
 

@@ -50,6 +50,10 @@ struct DeviceInfo {
 
 enum class Format { rgba32_float, r32_uint, depth32_float };
 
+constexpr std::uint32_t texel_bytes(Format format) {
+  return format == Format::rgba32_float ? 16 : 4;
+}
+
 struct ImageOptions {
   Format format = Format::rgba32_float;
   std::uint32_t width = 1;   // pixels

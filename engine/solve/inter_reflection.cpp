@@ -43,15 +43,17 @@ void InterReflection::turned() {
 void InterReflection::put_back(device::Device& device, std::vector<LevelBuffers>& levels) {
   if (!matrix_) return;
   matrix_->put_back(device);
+  remeasure();
   const auto sky = sky_of_levels(graph_.levels());
   for (std::size_t i = 0; i < levels.size(); ++i) {
     device::write_bytes(device, levels[i].sky, std::as_bytes(std::span(sky[i])));
   }
 }
 
-bool InterReflection::refresh(Workspace& work, std::vector<LevelBuffers>& levels, std::uint32_t rows) {
+bool InterReflection::refresh(Workspace& work, std::span<const Level> shape, std::vector<LevelBuffers>& levels,
+                              std::uint32_t rows) {
   if (!matrix_ || matrix_->record_refresh(work, levels[*level_], rows) == 0) return false;
-  if (!sky_) sky_.emplace(work.recorder.device(), graph_.levels(), *level_);
+  if (!sky_) sky_.emplace(work.recorder.device(), shape, *level_);
   sky_->record(work, *matrix_, levels);
   work.recorder.submit();
   return true;

@@ -36,6 +36,9 @@ class InterReflection {
   // The vertices of level `number` have moved.
   void moved(std::uint32_t number);
 
+  // The areas of faces that `refresh` is given are others.
+  void remeasure() { sky_.reset(); }
+
   // The body has turned or moved as a whole.
   void turned();
 
@@ -44,7 +47,7 @@ class InterReflection {
 
   // Brings up to `rows` rows that are behind the shape up to date, all with 0; then the view of the sky on every level.
   // To be called once in a solve. Whether there were any.
-  bool refresh(Workspace& work, std::vector<LevelBuffers>& levels, std::uint32_t rows);
+  bool refresh(Workspace& work, std::span<const Level> shape, std::vector<LevelBuffers>& levels, std::uint32_t rows);
 
   // How far the exchange is behind the shape, as ExchangeMatrix::age; 0 without one.
   std::uint32_t age() const { return matrix_ ? matrix_->age() : 0; }

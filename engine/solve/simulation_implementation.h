@@ -110,6 +110,7 @@ struct Simulation::Implementation {
     device::write_bytes(device, levels[number].vertices, std::as_bytes(moved.vertices));
     if (levels[number].nodes.size() > 0) device::write_bytes(device, levels[number].nodes, std::as_bytes(moved.nodes));
     operators.remeasure(number, moved);
+    exchange.remeasure();
     exchange.moved(number);
     if (number == 0) gather.reset();
     forget_shape();
@@ -200,7 +201,7 @@ struct Simulation::Implementation {
     solved.reset();
     work.recorder.clear();
     const OperatorKey key = key_of(options);
-    relight(exchange.refresh(work, levels, options.exchange_rows));
+    relight(exchange.refresh(work, shape.levels(), levels, options.exchange_rows));
     make_room(key, options);
     const auto with = [&](SolverKind solver) { return run(key, options, solver); };
     SolveReport report = options.solver == SolverKind::automatic

@@ -28,8 +28,7 @@ vec3 coordinates_in(uint face, vec3 point) {
   vec3 normal = cross(u, v);
   float area = max(dot(normal, normal), 1e-30);
   float second = dot(cross(offset, v), normal) / area, third = dot(cross(u, offset), normal) / area;
-  vec3 l = max(vec3(1.0 - second - third, second, third), vec3(0));
-  return l / (l.x + l.y + l.z);
+  return inside_triangle(vec3(1.0 - second - third, second, third));
 }
 
 // Radiance of what is behind the body along a ray from the eye, W/(mm^2 sr).
@@ -105,7 +104,7 @@ struct Seen {
   vec3 specular;          // times its share
 };
 
-// The face that sample k shows; what is taken leaves `waiting`.
+// The face that sample `first` shows; what is taken leaves `waiting`.
 Seen face_seen(Pixel pixel, uvec4 seen, uint first, inout uint waiting) {
   Seen all = Seen(scene.triangle_face.at[seen[first] - 1u], 0.0, 0.0, vec3(0), vec3(0), vec3(0));
   for (uint k = first; k < 4u; ++k) {

@@ -11,11 +11,9 @@
 // Part of a display triangle. `roughness`, `eta` and `evenly` become those of the last that was made.
 struct Spot {
   uvec3 vertices;  // of the display mesh
-  uint face;       // outside face of level 0
   vec3 l;          // barycentric coordinates of its middle in the triangle
   vec3 position;   // mm
   vec3 normal;     // unit, by which it is shaded
-  vec3 towards;    // the eye, unit
   vec3 specular;   // W/(mm^2 sr)
   float share;     // of the pixel
   float even_transmittance;  // what passes of even light within, over that of all directions: Lambertian radiance
@@ -115,12 +113,10 @@ Spot spot_of(Pixel pixel, uint triangle, uint samples) {
   uvec3 at = uvec3(SCENE.triangles.at[3u * triangle], SCENE.triangles.at[3u * triangle + 1u],
                    SCENE.triangles.at[3u * triangle + 2u]);
   spot.vertices = at;
-  spot.face = SCENE.face.at[at.x];
   mat3 corners = mat3(clip_of(at.x), clip_of(at.y), clip_of(at.z));
   vec2 place = middle_of(pixel, samples);
   spot.l = inside_triangle(weights_at(corners, place));
   spot.position = positions_weighed(at, spot.l);
-  spot.towards = towards_eye(SCENE.eye, spot.position);
   vec3 n = normalize(weighed(spot.l, SCENE.normals.at[at.x], SCENE.normals.at[at.y], SCENE.normals.at[at.z]));
   roughness = SCENE.roughness;
   if (has_roughness_map() || has_normal_map()) {
@@ -130,15 +126,16 @@ Spot spot_of(Pixel pixel, uint triangle, uint samples) {
   }
   vec3 first = SCENE.vertices.at[at.x];
   vec3 across = cross(SCENE.vertices.at[at.y] - first, SCENE.vertices.at[at.z] - first);
-  spot.normal = seen_normal(n, across, spot.towards);
-  Refraction body = refraction_behind(SCENE.face_kinds, spot.face);
+  vec3 v = towards_eye(SCENE.eye, spot.position);
+  spot.normal = seen_normal(n, across, v);
+  Refraction body = refraction_behind(SCENE.face_kinds, SCENE.face.at[at.x]);
   eta = body.eta;
-  float cosine = dot(spot.normal, spot.towards);
+  float cosine = dot(spot.normal, v);
   evenly = rough_reflectance(body, cosine, roughness);
   spot.even_transmittance = fresnel_transmittance(clamp(cosine, 0.0, 1.0), eta) / body.radiance_norm;
   float sky = dot(spot.l, vec3(SCENE.sky.at[SCENE.face.at[at.x]], SCENE.sky.at[SCENE.face.at[at.y]],
                                SCENE.sky.at[SCENE.face.at[at.z]]));
-  spot.specular = specular_radiance(spot.position, spot.normal, spot.towards, sky);
+  spot.specular = specular_radiance(spot.position, spot.normal, v, sky);
   return spot;
 }
 

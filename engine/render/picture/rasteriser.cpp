@@ -76,7 +76,7 @@ struct Rasteriser::Targets {
   device::ImageOptions image_options(device::Format of) const { return {of, 2 * width, 2 * height}; }
   bool in_place() const { return images.front().address() != 0; }
   std::uint64_t bytes_of(std::uint64_t count) const {  // samples, in one image
-    return (format == device::Format::rgba32_float ? 16 : 4) * count;
+    return device::texel_bytes(format) * count;
   }
 
   // Where a shader reads the samples of image k.
