@@ -11,8 +11,8 @@
 using namespace quadgraph;
 
 TEST_CASE("a start from the coarser level saves iterations") {
-  Scene alone({8});
-  Scene chain({8, 4, 2});
+  Scene alone({6});
+  Scene chain({6, 3});
   for (Scene* scene : {&alone, &chain}) {
     scene->simulation.set_material(homogeneous(0.01f));
     scene->light(one_side);

@@ -36,7 +36,7 @@ TEST_CASE("where nothing is absorbed, walks bring out all of the light, whatever
     CAPTURE(eta);
     Scene scene({8, 4});
     gpu::Material material{};
-    material.sigma_s_prime = {0.3f, 1.0f, 3.0f};
+    material.sigma_s_prime = {0.2f, 0.6f, 1.5f};
     material.sigma_a = glm::vec3(0);
     material.eta = eta;
     scene.simulation.set_material(material);
@@ -54,7 +54,7 @@ TEST_CASE(
     "where nothing is absorbed, scattering forwards brings out all of the light, too, and the error knows of it") {
   Scene scene({8, 4});
   gpu::Material material{};
-  material.sigma_s_prime = {0.3f, 1.0f, 3.0f};
+  material.sigma_s_prime = {0.2f, 0.6f, 1.5f};
   material.sigma_a = glm::vec3(0);
   material.eta = 1.3f;
   material.g = {0.9f, 0.6f, -0.5f};
@@ -76,7 +76,7 @@ TEST_CASE(
 }
 
 TEST_CASE("walks find the same power by any importance: the solution's own, one that is wrong by two, and none") {
-  for (const float scattering : {0.02f, 1.0f, 4.0f}) {
+  for (const float scattering : {0.02f, 2.0f}) {
     Scene scene({8, 4});
     gpu::Material material{};
     material.sigma_s_prime = scattering * glm::vec3(1, 0.5f, 2);
