@@ -66,10 +66,12 @@ class ProjectorScene:
         flat = np.concatenate([places.reshape(-1, 2), np.zeros((met.size, 1))], axis=1)
         at = np.floor(project(self.lens, projector, flat)).astype(int)
         within = met.ravel() & (at >= 0).all(axis=1) & (at < SIZE).all(axis=1)
-        columns, rows = np.where(within[:, None], at, 0).T
+        # What lights each of four places in a pixel of the camera: a pixel of the projector, or the room alone.
+        lights = np.where(within, at[:, 1] * SIZE[0] + at[:, 0], SIZE[0] * SIZE[1])
+        lights = lights.reshape(lens.height, 2, lens.width, 2)
+        four = [np.ascontiguousarray(lights[:, down, :, right]) for down in (0, 1) for right in (0, 1)]
         for pattern in stripes.patterns(SIZE, STRIPE):
-            lit = np.where(within, np.where(pattern[rows, columns] > 0, 1.0, LEAK), 0) + ROOM
-            lit = lit.reshape(lens.height, 2, lens.width, 2).mean(axis=(1, 3))
-            shown = reflectance * lit[..., None]
+            sent = np.append(np.where(pattern > 0, 1.0, LEAK), 0) + ROOM
+            shown = reflectance * (sum(sent[each] for each in four) / 4)[..., None]
             variances = noise[0] ** 2 + noise[1] * shown
             yield shown + self.generator.normal(size=shown.shape) * np.sqrt(variances)

@@ -40,10 +40,13 @@ class Lens:
         r2 = x * x + y * y
         k1, k2, k3, k4, k5, k6 = self.radial
         p1, p2 = self.tangential
-        factor = (1 + r2 * (k1 + r2 * (k2 + r2 * k3))) / (1 + r2 * (k4 + r2 * (k5 + r2 * k6)))
-        across = x * factor + 2 * p1 * x * y + p2 * (r2 + 2 * x * x)
-        downward = y * factor + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y
-        return np.stack([across, downward], axis=1)
+        factor = 1 + r2 * (k1 + r2 * (k2 + r2 * k3))
+        if k4 or k5 or k6:
+            factor = factor / (1 + r2 * (k4 + r2 * (k5 + r2 * k6)))
+        shown = np.empty((len(x), 2))
+        shown[:, 0] = x * factor + 2 * p1 * x * y + p2 * (r2 + 2 * x * x)
+        shown[:, 1] = y * factor + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y
+        return shown
 
     def places(self, slopes: np.ndarray) -> np.ndarray:
         """Where rays of slopes (n, 2) meet the photograph, (n, 2)."""

@@ -122,13 +122,15 @@ def _bins(level: np.ndarray, off: np.ndarray) -> list[tuple[float, float, int]]:
     if level.size < _LEAST_IN_BIN:
         return result
     edges = np.unique(np.quantile(level, np.linspace(0, 1, _BINS + 1)))
-    places = np.clip(np.searchsorted(edges, level, side="right") - 1, 0, max(len(edges) - 2, 0))
-    for place in range(max(len(edges) - 1, 1)):
-        inside = off[places == place]
+    count = max(len(edges) - 1, 1)
+    places = np.clip(np.searchsorted(edges, level, side="right") - 1, 0, count - 1).astype(np.uint8)
+    order = np.argsort(places, kind="stable")
+    ends = np.cumsum(np.bincount(places, minlength=count))[:-1]
+    for inside, levels in zip(np.split(off[order], ends), np.split(level[order], ends), strict=True):
         if len(inside) >= _LEAST_IN_BIN:
             spread = _MAD * float(np.median(np.abs(inside - np.median(inside))))
             if spread > 0:
-                result.append((max(float(level[places == place].mean()), 0.0), spread**2, len(inside)))
+                result.append((max(float(levels.mean()), 0.0), spread**2, len(inside)))
     return result
 
 
