@@ -25,9 +25,12 @@ def sources() -> Iterator[Path]:
 def python_functions(text: str) -> Iterator[tuple[str, int]]:
     """First line and number of lines of each function, nested ones too; decorators are no part of it."""
     lines = text.splitlines()
-    for node in ast.walk(ast.parse(text)):
+    left: list[ast.AST] = [ast.parse(text)]
+    for node in left:  # statements alone, which are a fifth of all nodes
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
             yield lines[node.lineno - 1].strip(), node.end_lineno - node.lineno + 1
+        for name in ("body", "orelse", "finalbody", "handlers", "cases"):
+            left += getattr(node, name, [])
 
 
 def cpp_functions(text: str) -> Iterator[tuple[str, int]]:

@@ -163,7 +163,7 @@ def test_masks_tell_where_the_body_lies(session, tmp_path, capsys):
     assert "pose</b>: by 4 masks" in (tmp_path / "check.html").read_text()
 
 
-def test_a_pose_that_masks_cannot_tell_is_named(session, tmp_path, capsys):
+def test_a_pose_that_masks_cannot_tell_is_named(session, tmp_path):
     document = json.loads((session / "session.json").read_text())
     shots = [{name: each for name, each in shot.items() if name != "background"} for shot in document["photographs"]]
     path = session / f"{tmp_path.name}.json"
@@ -175,6 +175,12 @@ def test_a_pose_that_masks_cannot_tell_is_named(session, tmp_path, capsys):
         with pytest.raises(InputError) as error:
             session_file.read(path)
         assert said in str(error.value)
+
+
+@pytest.mark.long
+def test_a_body_in_another_unit_fits_nowhere(session, tmp_path, capsys):
+    document = json.loads((session / "session.json").read_text())
+    path = session / f"{tmp_path.name}.json"
     path.write_text(json.dumps(document | {"pose": {"fit": True}, "unit": "cm"}))
     assert main(["capture", "import", str(path), "-o", str(tmp_path / "capture.json")]) == 1
     assert "pose.fit: where it fits best the body shares" in (said := capsys.readouterr().err)

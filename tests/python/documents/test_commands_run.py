@@ -1,7 +1,7 @@
 """The commands of the documents run, page by page, in a fresh folder with what a reader has, and write what they say.
 
-In every run those that take seconds, on a small ball in place of the bunny; in the long run all but those that
-exceptions.toml names, on the bunny that tools/demo bakes.
+In every run those that take seconds, on a small ball in place of the bunny, with a file of defaults that makes pictures
+small; in the long run all but those that exceptions.toml names, on the bunny that tools/demo bakes.
 """
 
 from __future__ import annotations
@@ -54,6 +54,12 @@ def furnish(folder: Path, page: str, mesh: Path, body: Path) -> None:
         write_obj(Surface(stretched, np.array(rest.faces)), folder / "walk" / f"{step}.obj")
 
 
+def small_pictures(folder: Path) -> None:
+    """Give the commands in a folder a file of defaults by which pictures are small where no size is typed."""
+    (folder / "config" / "quadgraph").mkdir(parents=True)
+    (folder / "config" / "quadgraph" / "config.toml").write_text('[render]\nsize = "160x90"\n')
+
+
 def run(folder: Path, commands: tuple[Command, ...]) -> None:
     """Run commands in a folder, one after the other in one shell; each has to succeed and to write what it says."""
     lines = ["set -euo pipefail"]
@@ -64,7 +70,7 @@ def run(folder: Path, commands: tuple[Command, ...]) -> None:
         done = subprocess.run(
             ["bash", "-c", "\n".join(lines)],
             cwd=folder,
-            env=environment(folder),
+            env=environment(folder) | {"XDG_CONFIG_HOME": str(folder / "config")},
             stdout=said,
             stderr=subprocess.STDOUT,
             timeout=7200,
@@ -88,9 +94,9 @@ def run_python(folder: Path, page: str) -> None:
 def ball(tmp_path_factory) -> tuple[Path, Path]:
     """A ball as OBJ, and baked."""
     folder = tmp_path_factory.mktemp("ball")
-    mesh = write_obj(icosphere(4, 40), folder / "ball.obj")
-    bake(mesh, folder / "ball.qgraph", BakeOptions(height_mm=80, surface_vertices=800))
-    return mesh, folder / "ball.qgraph"
+    finer = write_obj(icosphere(4, 40), folder / "finer.obj")
+    bake(finer, folder / "ball.qgraph", BakeOptions(height_mm=80, surface_vertices=800))
+    return write_obj(icosphere(3, 40), folder / "ball.obj"), folder / "ball.qgraph"
 
 
 @pytest.fixture(scope="module")
@@ -104,6 +110,7 @@ def demo(bunny_path, tmp_path_factory) -> tuple[Path, Path]:
 @pytest.mark.parametrize("page", SHORT)
 def test_the_short_commands_of_a_page_run(page, tmp_path, ball):
     furnish(tmp_path, page, *ball)
+    small_pictures(tmp_path)
     run(tmp_path, script(page, long=False))
     if page == "README.md":
         run_python(tmp_path, page)

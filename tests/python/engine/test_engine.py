@@ -186,8 +186,8 @@ def test_unusable_input_is_named(engine, sphere_path):
 
 
 @pytest.mark.parametrize("model", ["diffusion", "sp3"])
-def test_storing_entries_hardly_changes_the_exitance(bunny_qgraph, model):
-    graph = _core.Engine(bunny_qgraph).graph
+def test_storing_entries_hardly_changes_the_exitance(small_bunny, model):
+    graph = _core.Engine(small_bunny).graph
     level = graph.levels[0]
     material = _core.Material("marble-veins")
     coefficients = _core.evaluate_material(graph, 0, material)

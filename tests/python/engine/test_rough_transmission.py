@@ -18,7 +18,7 @@ CLEAR = "sigma_s_prime=0.03,sigma_a=0.02,eta=1.5"
 @pytest.fixture(scope="module")
 def ball(tmp_path_factory):
     path = tmp_path_factory.mktemp("rough") / "ball.qgraph"
-    write_levels(path, [icosphere(4, RADIUS)])
+    write_levels(path, [icosphere(3, RADIUS)])
     return path
 
 
@@ -71,6 +71,7 @@ def test_noise_falls_with_samples(engine):
     assert many < few / 3
 
 
+@pytest.mark.long
 def test_devices_agree(tmp_path):
     ball = tmp_path / "ball.qgraph"
     write_levels(ball, [icosphere(3, RADIUS)])

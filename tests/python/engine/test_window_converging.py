@@ -7,10 +7,11 @@ from pathlib import Path
 
 import numpy as np
 from PIL import Image
-from test_window import PANEL, SIZE, open_window, pytestmark, server
+from test_window import PANEL, open_window, pytestmark, server
 
 __all__ = ["open_window", "pytestmark", "server"]
 
+SIZE = (640, 320)  # of the window: a solve that joins the mean draws the picture anew
 NOTE = 60  # pixels at the top, where it says how far it has come
 LOOK = ["--material", "sigma_s_prime=.4,sigma_a=.05,eta=1.3", "--view", "45,15,6.83", "--light", "directional:-1,0,0:3"]
 QUICK = ["--sweep-points", "300", "--samples", "16", "--no-ground", "--exposure", "1", "--background", "black"]
@@ -18,6 +19,12 @@ QUICK = ["--sweep-points", "300", "--samples", "16", "--no-ground", "--exposure"
 
 def body_of(hand) -> np.ndarray:
     return hand.look()[NOTE : SIZE[1], PANEL : SIZE[0]]
+
+
+def resized(hand):
+    """A window, once it has that size."""
+    hand.do("windowsize", "--sync", hand.window, *map(str, SIZE))
+    return hand
 
 
 def wait_for(hand, what: str, seen) -> None:
@@ -29,11 +36,11 @@ def wait_for(hand, what: str, seen) -> None:
 
 
 def test_a_picture_at_rest_goes_on_to_its_error_and_is_saved_with_its_noise(open_window, tmp_path: Path):
-    plain = open_window(*LOOK, *QUICK)
-    before = plain.picture()[NOTE:]
+    plain = resized(open_window(*LOOK, *QUICK))
+    before = plain.screen()[NOTE : SIZE[1], PANEL : SIZE[0]]
     corner = plain.look()[:NOTE, PANEL : SIZE[0]]
     plain.close()
-    hand = open_window(*LOOK, *QUICK, "--converge", "0.1%")
+    hand = resized(open_window(*LOOK, *QUICK, "--converge", "0.1%"))
     wait_for(hand, "no word of convergence", lambda: np.abs(hand.look()[:NOTE, PANEL : SIZE[0]] - corner).max() > 40)
     wait_for(hand, "the picture stays as it was", lambda: not np.array_equal(body_of(hand), before))
     assert not hand.busy()  # the picture that it began with is the settled one

@@ -5,29 +5,44 @@ from __future__ import annotations
 import json
 import signal
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
-from test_window import FIELD, PANEL, SIZE, Hand, open_window, pytestmark, server
+from test_window import FIELD, PANEL, SIZE, Hand, Server, pytestmark, server
 
 from baked import write_levels
 from shapes import icosphere
 
-__all__ = ["open_window", "pytestmark", "server"]
+__all__ = ["pytestmark", "server"]
 
 LOOK = ["--view", "0,0", "--no-ground", "--radiance", "lambertian", "--light", "directional:0,0,-1:1"]
 KEYS = 6
 
 
-@pytest.fixture
-def hand(open_window, tmp_path: Path) -> Hand:
-    """A window whose solves at rest take seconds: with many points, in few draws."""
-    body = write_levels(tmp_path / "ball.qgraph", [icosphere(4, 10), icosphere(3, 10)])
-    return open_window("--material", "skin1", "--sweep-points", "150000", "--sweeps", "2", *LOOK, body=body)
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Where the window saves."""
+    return tmp_path_factory.mktemp("hearing")
 
 
-def time_of_solve(hand: Hand) -> float:
+@pytest.fixture(scope="module")
+def hand(server: Server, folder: Path) -> Iterator[Hand]:
+    """A window for all tests, whose solves at rest take seconds: with many points, in few draws."""
+    body = write_levels(folder / "ball.qgraph", [icosphere(4, 10), icosphere(3, 10)])
+    options = ("--material", "skin1", "--sweep-points", "150000", "--sweeps", "2")
+    opened = Hand(server, folder, *options, *LOOK, body=body)
+    try:
+        yield opened
+        opened.close()
+    finally:
+        opened.process.kill()
+        opened.process.communicate()
+
+
+@pytest.fixture(scope="module")
+def whole(hand: Hand) -> float:
     """Seconds from a key that changes the light until the picture has converged."""
     hand.settle()
     start = time.monotonic()
@@ -56,11 +71,19 @@ def begin_solve(hand: Hand) -> None:
     time.sleep(0.5)
 
 
-def test_keys_are_answered_amid_a_solve_and_do_not_end_it(hand: Hand):
+def saved_after(hand: Hand, folder: Path, act) -> dict:
+    """The scene that the window saves once that is done."""
+    before = set(folder.glob("ball-*.json"))
+    act()
+    wait_until(lambda: set(folder.glob("ball-*.json")) > before, hand, "the scene is not saved")
+    (path,) = set(folder.glob("ball-*.json")) - before
+    return json.loads(path.read_text())
+
+
+def test_keys_are_answered_amid_a_solve_and_do_not_end_it(hand: Hand, whole: float):
     """Six of them, each seen before the next, take less than the one solve that is being made: to wait for the end of
     a solve takes a whole one for each, and so does one that begins anew after each key, however slow the machine is.
     """
-    whole = time_of_solve(hand)
     begin_solve(hand)
     plain = middle(hand)
     start = time.monotonic()
@@ -73,24 +96,19 @@ def test_keys_are_answered_amid_a_solve_and_do_not_end_it(hand: Hand):
     print(f"\n{1000 * taken / KEYS:.0f} ms a key, {whole:.1f} s a solve")
     assert taken < whole
     hand.calm()
-    hand.close()
 
 
-def test_what_is_changed_amid_a_solve_is_done_at_once(hand: Hand, tmp_path: Path):
+def test_what_is_changed_amid_a_solve_is_done_at_once(hand: Hand, whole: float, folder: Path):
     """The eye goes round, and the scene is saved from there, in less time than the solve takes that this ends."""
-    whole = time_of_solve(hand)
     begin_solve(hand)
     start = time.monotonic()
-    hand.keys(*["Right"] * KEYS, "ctrl+s")
-    saved = tmp_path / "ball-1.json"
-    wait_until(saved.exists, hand, "the scene is not saved")
+    saved = saved_after(hand, folder, lambda: hand.keys(*["Right"] * KEYS, "ctrl+s"))
     assert time.monotonic() - start < whole
-    assert json.loads(saved.read_text())["camera"]["azimuth"] == pytest.approx(-7.5 * KEYS)
+    assert saved["camera"]["azimuth"] == pytest.approx(-7.5 * KEYS)
     hand.calm()
-    hand.close()
 
 
-def test_what_is_done_while_a_picture_is_begun_stays_in_its_order(hand: Hand, tmp_path: Path):
+def test_what_is_done_while_a_picture_is_begun_stays_in_its_order(hand: Hand, folder: Path):
     """F12 comes together with a click into a field: what follows amid the solve of the picture is typed."""
     hand.do("mousemove", "150", str(FIELD))
     hand.settle()
@@ -99,7 +117,5 @@ def test_what_is_done_while_a_picture_is_begun_stays_in_its_order(hand: Hand, tm
     hand.do("keydown", "F12", "mousedown", "1", "mouseup", "1", "keyup", "F12", "key", *typed)
     hand.process.send_signal(signal.SIGCONT)
     hand.settle()
-    hand.keys("Escape", "ctrl+s")
-    wait_until((tmp_path / "ball-1.json").exists, hand, "nothing is saved")
-    assert json.loads((tmp_path / "ball-1.json").read_text())["material"] == "marble"
-    hand.close()
+    saved = saved_after(hand, folder, lambda: hand.keys("Escape", "ctrl+s"))
+    assert saved["material"] == "marble"

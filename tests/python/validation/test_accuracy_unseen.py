@@ -7,6 +7,7 @@ import io
 import json
 import shutil
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from quadgraph import cli
 from quadgraph.baking.pipeline import bake
 from quadgraph.base.errors import InputError
 from quadgraph.mesh.patches import PATCHES, patches_of
+from quadgraph.mesh.surface import Surface
 from quadgraph_validation.accuracy import unseen_engine, unseen_motion, unseen_study, unseen_tables
 from quadgraph_validation.bodies import unseen_bodies, unseen_cases
 from quadgraph_validation.truth.kept_walks import KeptWalks
@@ -132,10 +134,9 @@ def test_parts_and_errors_are_those_of_known_patches():
     assert set(unseen_study.parts_of(unknown, dark)) == {"whole", "lit", "unlit"}
 
 
-@pytest.fixture(scope="module")
-def baked(body, tmp_path_factory):
-    """A bake of the body: of the default options whenever it is asked for, and done once."""
-    kept, reports = tmp_path_factory.mktemp("baked") / "body.qgraph", []
+def baked(folder: Path):
+    """A bake of a body: of the default options whenever it is asked for, and done once."""
+    kept, reports = folder / "body.qgraph", []
 
     def once(mesh, path, options):
         if not reports:
@@ -147,21 +148,23 @@ def baked(body, tmp_path_factory):
 
 
 @contextlib.contextmanager
-def made_once(body, baked):
-    """The body of SEED is neither made nor baked again."""
+def made_once(body: Surface, folder: Path):
+    """The body of SEED is this one, and baked once."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(unseen_bodies, "surface_of", {SEED: body}.__getitem__)
-        patch.setattr(unseen_engine, "bake", baked)
+        patch.setattr(unseen_engine, "bake", baked(folder))
         yield patch
 
 
 @pytest.fixture(scope="module")
-def judged(body, baked, tmp_path_factory):
-    """A folder with the record and the pictures of one case, at rest and in motion, and what was printed."""
+def judged(tmp_path_factory):
+    """A folder with the record and the pictures of one case, at rest and in motion, and what was printed: of a ball in
+    place of the seed's body, of a tenth of its triangles.
+    """
     folder = tmp_path_factory.mktemp("judged")
     asked = f"accuracy unseen --seed {SEED} --count 1 --walks 200000 --sweeps 0 --sweeps 1 --motion --truth {folder}"
     printed = io.StringIO()
-    with made_once(body, baked) as patch, contextlib.redirect_stdout(printed):
+    with made_once(icosphere(3, 20.0), folder) as patch, contextlib.redirect_stdout(printed):
         patch.setattr(unseen_motion, "FRAMES", 4)
         patch.setattr(unseen_motion, "STILL", 3)
         patch.setattr(unseen_motion, "_TIMED", 1)
@@ -186,10 +189,10 @@ def test_a_case_is_judged_printed_recorded_and_drawn(judged):
 
 
 @pytest.mark.long
-def test_a_sky_comes_from_where_it_is(body, baked, tmp_path):
+def test_a_sky_comes_from_where_it_is(body, tmp_path):
     path = tmp_path / "sky.json"
     asked = f"accuracy unseen --seed {SEED} --count 1 --lights sky --walks 400000 --sweeps 0 --sweeps 2"
-    with made_once(body, baked):
+    with made_once(body, tmp_path):
         assert cli.main([*asked.split(), "--truth", str(tmp_path), "--json", str(path)]) == 0
     (row,) = json.loads(path.read_text())["rows"]
     plain, swept = row["solves"]

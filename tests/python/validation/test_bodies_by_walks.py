@@ -29,15 +29,15 @@ WALKS, BATCHES = 40_000, 12
 
 def ring() -> Surface:
     """About the x axis, from NEXT on."""
-    turned = torus(6.5, 2.5, 64, 32).vertices[:, [2, 0, 1]]
-    return Surface(turned + np.array([NEXT + 2.5, 0, 0]), torus(6.5, 2.5, 64, 32).triangles)
+    turned = torus(6.5, 2.5, 40, 20).vertices[:, [2, 0, 1]]
+    return Surface(turned + np.array([NEXT + 2.5, 0, 0]), torus(6.5, 2.5, 40, 20).triangles)
 
 
 @pytest.fixture(scope="module")
 def pair(tmp_path_factory):
     """The file of both, and its finest surface as one, ball first."""
     folder = tmp_path_factory.mktemp("pair")
-    shapes = {"ball": icosphere(4, APART), "ring": ring()}
+    shapes = {"ball": icosphere(3, APART), "ring": ring()}
     meshes = [BodyMesh(name, write_obj(shape, folder / f"{name}.obj"), unit="mm") for name, shape in shapes.items()]
     bake_bodies(meshes, folder / "pair.qgraph", BakeOptions(for_materials=(PALE.text, DARK.text)))
     with Engine(folder / "pair.qgraph") as engine:

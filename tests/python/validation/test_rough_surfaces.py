@@ -103,14 +103,14 @@ def errors(tmp_path: Path, surface: Surface, alpha: float, sigma_s: float, sigma
 
 
 def test_the_rim_of_a_dense_body_is_as_bright_as_walks_have_it(tmp_path):
-    found = errors(tmp_path, icosphere(4, RADIUS), 0.3, 1.0, 0.01, 1.4)
+    found = errors(tmp_path, icosphere(3, RADIUS), 0.3, 1.0, 0.01, 1.4)
     assert found["filled", "rough"] < 0.015
     assert found["rim", "rough"] < 0.04
     assert found["rim", "smooth"] > 2 * found["rim", "rough"]
 
 
 def test_a_clear_lens_is_frosted(tmp_path):
-    ball = icosphere(4, RADIUS)
+    ball = icosphere(3, RADIUS)
     lens = Surface(ball.vertices * (1, 1, 0.25), ball.triangles)
     found = errors(tmp_path, lens, 0.3, 0.06, 0.02, 1.5)
     assert found["filled", "rough"] < 0.07

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -83,17 +84,29 @@ def _by_face(case: judged_points.StabilityCase) -> judged_points.StabilityCase:
     return replace(case, regions=None)
 
 
-@pytest.fixture(scope="module")
-def record():
-    """The ends of every axis (and the middle, where silence was found), the default method."""
+def ends_of(chosen: Callable[[str], bool]) -> dict:
+    """The record of the ends of every axis (and the middle, where silence was found) of these maps, default method."""
     maps = [
-        each.thinned(3 if each.name in ("albedo", "thickness", "tolerance") else 2) for each in stability_suite.MAPS
+        each.thinned(3 if each.name in ("albedo", "thickness", "tolerance") else 2)
+        for each in stability_suite.MAPS
+        if chosen(each.name)
     ]
     return stability_suite.run(maps, ["fem"], StabilitySetting())
 
 
+@pytest.fixture(scope="module")
+def record():
+    """Of all maps but the one that takes as long as all others."""
+    return ends_of(lambda name: name != "jumps")
+
+
 def test_the_default_method_is_nowhere_wrong_silently(record):
     assert stability_suite.silent_of_default(record) == []
+
+
+@pytest.mark.long
+def test_nor_where_coefficients_jump():
+    assert stability_suite.silent_of_default(ends_of(lambda name: name == "jumps")) == []
 
 
 def test_the_suite_can_find_what_is_wrong_silently(tmp_path, capsys):
