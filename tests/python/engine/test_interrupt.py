@@ -47,7 +47,10 @@ def engine_on(path, material="marble"):
     return engine
 
 
-@pytest.mark.parametrize(("method", "twisted"), [("fem", False), ("fem", True), ("shortest-path", False)])
+@pytest.mark.parametrize(
+    ("method", "twisted"),
+    [pytest.param("fem", False, marks=pytest.mark.long), ("fem", True), ("shortest-path", False)],
+)
 def test_after_an_exception_amid_its_work_an_engine_answers_as_a_new_one(ring, alarm, method, twisted):
     how = {"method": method, "solver": "dpcg"} | ({"sweeps": 1, "sweep_points": 2000} if method == "fem" else {})
 

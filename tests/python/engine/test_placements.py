@@ -118,6 +118,7 @@ def test_a_body_that_moved_is_lit_as_one_that_was_baked_there(pair, place, turne
     assert np.sqrt(np.mean((found["left"][1] - alone["left"][1]) ** 2) / np.mean(alone["left"][1] ** 2)) > 0.05
 
 
+@pytest.mark.long
 def test_a_vulkan_device_moves_bodies_alike(pair):
     found = []
     for device in ("cpu", "llvmpipe"):

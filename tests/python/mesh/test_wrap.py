@@ -96,8 +96,11 @@ DEFECTS = {
 }
 
 
+LONG = ("sheets", "soup", "inside out in parts", "walls without thickness", "crossing")
+
+
 @pytest.mark.parametrize(
-    "defect", [pytest.param(name, marks=pytest.mark.long) if name == "sheets" else name for name in DEFECTS]
+    "defect", [pytest.param(name, marks=pytest.mark.long) if name in LONG else name for name in DEFECTS]
 )
 def test_what_cannot_be_repaired_is_refused_with_the_way_out_and_baked_with_it(tmp_path: Path, defect: str):
     surface = DEFECTS[defect]()

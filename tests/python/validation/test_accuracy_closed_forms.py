@@ -56,7 +56,7 @@ def test_layers_without_absorption_add_their_resistances():
     assert found.reflectance + found.transmittance == pytest.approx(1, rel=1e-9)
 
 
-@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("model", ["sp3", pytest.param("diffusion", marks=pytest.mark.long)])
 @pytest.mark.parametrize("lambertian", [False, True])
 def test_buried_slabs_conserve_energy_and_do_not_care_about_cuts(model, lambertian):
     model_of, boundary_of = MODELS[model]

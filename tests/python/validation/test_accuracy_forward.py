@@ -10,6 +10,7 @@ pytest.importorskip("quadgraph._core", reason="the compiled engine is not built:
 forward_study = pytest.importorskip("quadgraph_validation.accuracy.forward_study", reason="needs the extra walks")
 
 
+@pytest.mark.long
 def test_by_two_moments_most_of_what_the_reduced_coefficient_misses_is_there(monkeypatch):
     monkeypatch.setattr(forward_study, "CASES", ((3.0, 0.6, 1.3),))
     monkeypatch.setattr(forward_study, "FORWARD", (0.8,))

@@ -13,7 +13,13 @@ pytest.importorskip("quadgraph._core", reason="the compiled engine is not built:
 LINEAR_ELEMENTS = 1.9  # the least fitted order
 
 
-@pytest.mark.parametrize("case", orders_study.BODIES, ids=lambda case: case.name)
+@pytest.mark.parametrize(
+    "case",
+    [
+        pytest.param(case, id=case.name, marks=pytest.mark.long if case.name == "sphere" else ())
+        for case in orders_study.BODIES
+    ],
+)
 def test_fem_is_of_second_order_in_both_models(case):
     record = orders_study.study(schemes.on_reference, case, 3, orders_study.FEM)
     print(record)

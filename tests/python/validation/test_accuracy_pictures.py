@@ -42,7 +42,7 @@ def test_parts_that_walks_cannot_tell_are_left_out_of_the_summary():
     assert len(pictures_study.tables({"rows": [], "summary": found})) == 3
 
 
-@pytest.mark.parametrize("seed", range(101, 109))
+@pytest.mark.parametrize("seed", [101, 102, *(pytest.param(seed, marks=pytest.mark.long) for seed in range(103, 109))])
 def test_lights_are_where_walks_from_the_body_meet_them(seed):
     sight = pictures_study.drawn(seed)
     vertices = sight.case.surface.vertices

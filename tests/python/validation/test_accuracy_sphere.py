@@ -27,7 +27,9 @@ def ball():
     return schemes.on_reference(meshes.ball(sphere_study.RADIUS, 2))
 
 
-@pytest.mark.parametrize("eta", sphere_study.INDICES)
+@pytest.mark.parametrize(
+    "eta", [pytest.param(eta, marks=pytest.mark.long if eta == 1 else ()) for eta in sphere_study.INDICES]
+)
 def test_sp3_is_transport_on_both_sides(ball, eta):
     truth = walked(eta)
     found = sphere_study.exitance(ball, eta, SP3)

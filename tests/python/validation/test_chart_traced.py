@@ -119,6 +119,7 @@ def test_what_path_tracing_says_of_itself():
     assert [method.moves for method in found] == [*[True, True, False] * 2, False]
 
 
+@pytest.mark.long
 def test_both_variants_trace_the_same_picture(body):
     """By other random numbers: their means differ by noise alone, and a variant that is not there is told."""
     mitsuba_there()

@@ -111,7 +111,8 @@ def balls(tmp_path_factory):
     return folder / "balls.qgraph"
 
 
-@pytest.mark.parametrize("case", [pytest.param(c, marks=() if c == "dark" else pytest.mark.long) for c in CASES])
+@pytest.mark.long
+@pytest.mark.parametrize("case", CASES)
 def test_a_ball_in_a_ball_of_one_index_lets_out_what_walks_say(balls, case):
     """Of the outer index the engine is right; what another one of the inner ball changes is told."""
     shares = {index: share_out(case, index, WALKS) for index in INDICES}

@@ -100,7 +100,7 @@ def test_half_a_volume_scatters_where_its_cells_say():
     assert near > 3 * far > 0
 
 
-@pytest.mark.parametrize("eta", [1.0, 1.4])
+@pytest.mark.parametrize("eta", [pytest.param(1.0, marks=pytest.mark.long), 1.4])
 def test_in_a_furnace_every_patch_sends_out_what_it_takes_in(eta):
     """Uniform light and no absorption: light is the same everywhere, whatever the shape sees of itself."""
     body = waisted()

@@ -110,6 +110,7 @@ def test_balls_are_baked_once_for_all_materials(here, tmp_path, monkeypatch):
     assert len(baked) == len(set(baked)) == 2
 
 
+@pytest.mark.long
 def test_the_command_spreads_bodies_and_finds_what_is_finished(tmp_path, monkeypatch, capfd):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     records = []
@@ -243,6 +244,7 @@ def checked(pictures, folder, walks, *more):
     return (folder / "sphere-walks.npz").read_bytes()
 
 
+@pytest.mark.long
 def test_walks_of_cross_checks_are_the_same_to_the_byte(pictures, tmp_path, monkeypatch, capfd):
     monkeypatch.setattr(cross_checks, "SLABS", (("ketchup", 2, 1.0),))
     monkeypatch.setattr(cross_checks, "why_no_pmmc", lambda: "pmmc is not there")

@@ -59,7 +59,7 @@ def errors(engine: quadgraph.Engine, medium: str, sweeps: int) -> tuple[np.ndarr
 # In the thin medium the flat faces of a coarser ball alone leave 1.1% inside; a finer one takes half a minute.
 @pytest.mark.parametrize(
     ("medium", "ball"),
-    [("ketchup", 4), ("absorbing", 4), pytest.param("thin", 5, marks=pytest.mark.long)],
+    [("ketchup", 4), *(pytest.param(*case, marks=pytest.mark.long) for case in (("absorbing", 4), ("thin", 5)))],
     indirect=["ball"],
 )
 def test_sweeps_bring_moments_to_transport(medium, ball):
