@@ -91,7 +91,8 @@ def coefficients(
     """sigma_s_prime and sigma_a (n, 3), 1/mm, at points (n, 3), mm, in a body of that surface or on it."""
     if isinstance(material, core.Volume):
         return material.at(points, (surface.vertices.min(axis=0) + surface.vertices.max(axis=0)) / 2)
-    depths = np.zeros(len(points)) if on_surface else Depths(surface).at(points)[0]
+    by_depth = not on_surface and json.loads(core.material_json(material))["pattern"] == "layers"
+    depths = Depths(surface).at(points)[0] if by_depth else np.zeros(len(points))
     return core.material_at(core.Material(material), points, depths)
 
 
