@@ -11,7 +11,7 @@ import subprocess
 import time
 from collections.abc import Iterator
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -106,7 +106,13 @@ class Hand:
     """A running window and what can be done to it."""
 
     def __init__(
-        self, server: Server, folder: Path, *arguments: str, body: Path = tiny.PATH, program: tuple[str, ...] = ()
+        self,
+        server: Server,
+        folder: Path,
+        *arguments: str,
+        body: Path = tiny.PATH,
+        program: tuple[str, ...] = (),
+        size: tuple[int, int] = SIZE,
     ):
         if body.suffix != ".json":
             arguments += tuple(word for option in QUICK.items() if option[0] not in arguments for word in option)
@@ -123,7 +129,7 @@ class Hand:
             preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
         )
         self.window = self.do("search", "--sync", "--onlyvisible", "--name", "QuadGraph").split()[0]
-        self.do("windowmove", self.window, "0", "0", "windowsize", "--sync", self.window, *map(str, SIZE))
+        self.do("windowmove", self.window, "0", "0", "windowsize", "--sync", self.window, *map(str, size))
 
     def patience(self, seconds: float) -> Patience:
         return Patience(self.process, seconds)
@@ -227,8 +233,8 @@ def open_window(server: Server, tmp_path: Path) -> Iterator:
     """Opens windows, and closes what a failed test has left open."""
     hands: list[Hand] = []
 
-    def start(*arguments: str, body: Path = tiny.PATH, program: tuple[str, ...] = ()) -> Hand:
-        hands.append(Hand(server, tmp_path, *arguments, body=body, program=program))
+    def start(*arguments: str, **how: Any) -> Hand:
+        hands.append(Hand(server, tmp_path, *arguments, **how))
         return hands[-1]
 
     yield start

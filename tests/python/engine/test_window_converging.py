@@ -21,12 +21,6 @@ def body_of(hand) -> np.ndarray:
     return hand.look()[NOTE : SIZE[1], PANEL : SIZE[0]]
 
 
-def resized(hand):
-    """A window, once it has that size."""
-    hand.do("windowsize", "--sync", hand.window, *map(str, SIZE))
-    return hand
-
-
 def wait_for(hand, what: str, seen) -> None:
     patience = hand.patience(60)
     while not seen():
@@ -36,11 +30,11 @@ def wait_for(hand, what: str, seen) -> None:
 
 
 def test_a_picture_at_rest_goes_on_to_its_error_and_is_saved_with_its_noise(open_window, tmp_path: Path):
-    plain = resized(open_window(*LOOK, *QUICK))
+    plain = open_window(*LOOK, *QUICK, size=SIZE)
     before = plain.screen()[NOTE : SIZE[1], PANEL : SIZE[0]]
     corner = plain.look()[:NOTE, PANEL : SIZE[0]]
     plain.close()
-    hand = resized(open_window(*LOOK, *QUICK, "--converge", "0.1%"))
+    hand = open_window(*LOOK, *QUICK, "--converge", "0.1%", size=SIZE)
     wait_for(hand, "no word of convergence", lambda: np.abs(hand.look()[:NOTE, PANEL : SIZE[0]] - corner).max() > 40)
     wait_for(hand, "the picture stays as it was", lambda: not np.array_equal(body_of(hand), before))
     assert not hand.busy()  # the picture that it began with is the settled one
