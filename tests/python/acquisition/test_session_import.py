@@ -195,6 +195,7 @@ def spoilt(folder: Path, tmp_path: Path, change: Any) -> tuple[int, Path]:
     copied = tmp_path / "spoilt"
     shutil.copytree(folder, copied, ignore=shutil.ignore_patterns("capture*", "*.bin"))
     document = json.loads((copied / "session.json").read_text())
+    document["photographs"] = document["photographs"][:4]
     change(document, copied)
     (copied / "session.json").write_text(json.dumps(document))
     return main(["capture", "import", str(copied), "-o", str(copied / "capture.json")]), copied

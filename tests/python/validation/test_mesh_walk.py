@@ -55,7 +55,7 @@ def areas(surface: Surface, patch: np.ndarray) -> np.ndarray:
     return np.bincount(patch, np.linalg.norm(surface.doubled_normals, axis=1) / 2)
 
 
-def walked(surface, medium, light, patch, batches: int = 10, walks: int = 20_000, again: bool = True):
+def walked(surface, medium, light, patch, batches: int = 10, walks: int = 10_000, again: bool = True):
     walker = mesh_walk.MeshWalker(surface, medium, light, patch, again)
     return [walker.batch(walks, k, seed=3) for k in range(batches)]
 
