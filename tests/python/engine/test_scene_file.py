@@ -42,6 +42,7 @@ def moving(folder: Path) -> Path:
         "material": "wholemilk",
         "lights": [{"type": "directional", "direction": [1, 0, 0], "irradiance": 1}],
         "picture": {"width": 48, "height": 32, "background": "black", "exposure": 0},
+        "solver": {"sweep_points": 300},
         "frames": 4,
         "tracks": [{"path": "/lights/0/direction", "keys": [[0, [1, 0, 0]], [3, [-1, 0, 0]]], "between": "step"}],
     }
