@@ -36,7 +36,7 @@ def served(ball, *options, port=0):
     """The process, and the address that it says."""
     command = [sys.executable, "-m", "quadgraph.cli", "serve", str(ball), "--material", "skin1", "--device", "cpu"]
     process = subprocess.Popen(
-        [*command, "--size", "96x96", "--port", str(port), *options],
+        [*command, "--size", "96x96", "--sweep-points", "300", "--port", str(port), *options],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
