@@ -74,8 +74,8 @@ void CellCosts::run(const Voxels& voxels, const PathMesh& mesh, const device::Bu
                     const device::Buffer& cost, std::vector<PassStats>& passes) {
   if (!material_ && optical_.size() == 0) {
     throw InputError(
-        "shortest-path: coefficients are given per node of levels, as those of several bodies are, which it does not "
-        "know; give a material or a volume");
+        "shortest-path: coefficients are given per node of levels, which it does not know; give a material or a "
+        "volume");
   }
   gpu::PathMaterial body = grid_;
   if (material_) body.material = *material_;

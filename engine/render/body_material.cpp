@@ -6,6 +6,7 @@
 #include "engine/optics/depth.h"
 #include "engine/reference/operator.h"
 #include "engine/reference/tet_points.h"
+#include "engine/render/body_grid.h"
 #include "engine/render/engine_implementation.h"
 #include "shaders/material/material.h"
 
@@ -49,6 +50,16 @@ std::vector<BodyMaterial> at_surfaces(std::span<const BodyMaterial> materials,
   return found;
 }
 
+// Squares of indices over those of the outermost bodies around.
+std::vector<float> etendue_of(std::span<const BodyMaterial> materials, const std::vector<std::uint32_t>& outermost) {
+  std::vector<float> found;
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    const float ratio = materials[i].eta / materials[outermost[i]].eta;
+    found.push_back(ratio * ratio);
+  }
+  return found;
+}
+
 void check_materials(std::span<const BodyMaterial> materials, std::span<const std::string> bodies) {
   if (bodies.empty()) throw InputError("materials: found for a file of one body without a name; set its material");
   if (materials.size() != bodies.size()) {
@@ -75,7 +86,11 @@ std::string index_warning(std::span<const BodyMaterial> materials, std::span<con
     text += (text.empty() ? "" : "; ") + bodies[i] + " has the index of refraction " + number_text(around) + " of " +
             bodies[outermost[i]] + ", which it lies within, and not its own of " + number_text(own);
   }
-  if (!text.empty()) text += ": what the surface between them would mirror and bend is left out";
+  if (!text.empty()) {
+    text +=
+        ": what the surface between them mirrors and bends is left out by this method; --method fem and "
+        "quadgraph-fv know it";
+  }
   return text;
 }
 
@@ -121,10 +136,11 @@ void Engine::set_materials(std::span<const BodyMaterial> given) {
     simulation.set_optical(i, at_nodes(levels[i], materials), eta,
                            i == 0 ? std::span(elsewhere) : std::span<const gpu::Optical>());
   }
+  simulation.set_etendue(etendue_of(given, self.graph.outermost()));
   std::vector<ScatteringAngles> angles;
   for (const BodyMaterial& material : materials) angles.push_back(material.angles);
   simulation.set_angles(angles_of(angles));
-  self.paths.clear();
+  self.paths.set([&self, materials] { return grid_of_bodies(self.graph.levels()[0], materials, self.graph.bodies()); });
   self.material = text_of(materials, bodies);
   self.certainty = {};
   self.body_roughness.emplace(self.device, self.graph, materials);

@@ -61,6 +61,7 @@ void Engine::set_optical(std::uint32_t level, std::span<const gpu::Optical> opti
   const auto turn = implementation_->in_use.take();
   auto& self = *implementation_;
   self.levels().set_optical(level, optical, eta, elsewhere);
+  self.levels().set_etendue({});
   self.paths.clear();
   self.material = "coefficients per node, eta=" + number_text(eta);
   self.certainty = {};
@@ -196,7 +197,7 @@ SolveReport Engine::solve(const SolveOptions& options, const std::function<void(
     self.interruptible([&] { self.simulation->certify(options, *self.report, check); });
   }
   const bool of_one_text = !by_path && !self.body_roughness;
-  if (self.body_roughness) self.report->index_warning = self.index_warning;
+  if (self.body_roughness && !conserves(options.method)) self.report->index_warning = self.index_warning;
   if (of_one_text) self.report->size_warning = size_warning(self.material, self.of_text, self.simulation->chord());
   self.add_overlaps(*self.report);
   judge(*self.report, self.lights, self.lights_inside());

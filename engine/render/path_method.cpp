@@ -2,6 +2,7 @@
 
 #include <array>
 #include <optional>
+#include <utility>
 
 #include "engine/optics/fresnel.h"
 #include "engine/path/cell_costs.h"
@@ -46,9 +47,15 @@ void PathMethod::set(const OpticalGrid& grid) {
   grid_ = GivenGrid{grid, {grid.optical.begin(), grid.optical.end()}};
 }
 
+void PathMethod::set(std::function<GivenGrid()> grid) {
+  clear();
+  make_grid_ = std::move(grid);
+}
+
 void PathMethod::clear() {
   material_.reset();
   grid_.reset();
+  make_grid_ = nullptr;
   stale_ = true;
 }
 
@@ -74,6 +81,10 @@ void PathMethod::start_over() {
 PathMethod::Parts& PathMethod::parts() {
   if (!parts_) parts_ = std::make_unique<Parts>(device_);
   if (!stale_) return *parts_;
+  if (make_grid_) {
+    grid_ = make_grid_();
+    make_grid_ = nullptr;
+  }
   parts_->costs.clear();
   if (material_) parts_->costs.set(*material_);
   if (grid_) {

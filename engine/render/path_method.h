@@ -2,6 +2,7 @@
 // (docs/shortest-path.md).
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -12,16 +13,11 @@
 #include "engine/optics/optical_grid.h"
 #include "engine/path/voxels.h"
 #include "engine/reference/solution.h"
+#include "engine/render/body_grid.h"
 #include "engine/render/display/display_buffers.h"
 #include "engine/render/light/shadow_maps.h"
 
 namespace quadgraph {
-
-// An OpticalGrid that keeps what it has been given.
-struct GivenGrid {
-  OpticalGrid grid;
-  std::vector<gpu::Optical> optical;
-};
 
 // Makes what it needs of the device at the first solve.
 class PathMethod {
@@ -32,6 +28,8 @@ class PathMethod {
   // Coefficients and edits, see CellCosts.
   void set(const gpu::Material& material);
   void set(const OpticalGrid& grid);
+  // A grid that is made at the next solve; what that throws, the solve does.
+  void set(std::function<GivenGrid()> grid);
   void clear();
   void set(std::span<const Edit> edits);
 
@@ -67,7 +65,8 @@ class PathMethod {
   std::vector<Edit> edits_;
   std::optional<gpu::Material> material_;
   std::optional<GivenGrid> grid_;
-  device::Buffer tools_;  // gpu::PathTool
+  std::function<GivenGrid()> make_grid_;  // as long as it has not been
+  device::Buffer tools_;                  // gpu::PathTool
   std::uint32_t tool_count_ = 0;
   bool stale_ = true;                // the parts do not know the present coefficients
   std::optional<PathOptions> body_;  // of which voxels and costs are; none: not of the present body

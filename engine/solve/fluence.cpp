@@ -5,6 +5,7 @@
 #include "engine/base/error.h"
 #include "engine/device/memory.h"
 #include "engine/reference/tet_locator.h"
+#include "engine/solve/etendue.h"
 
 namespace quadgraph {
 namespace {
@@ -22,16 +23,17 @@ Fluence fluence(Simulation& simulation, Method method) {
 
 std::vector<glm::vec3> fluence_at(Simulation& simulation, Method method, std::span<const glm::vec3> points,
                                   const std::function<void()>& check) {
-  const std::vector<glm::vec3> phi = simulation.phi();
+  const std::vector<glm::vec3> phi = simulation.basic_phi();
   const Level& level = simulation.present_level();
   const TetLocator locator(level);
   const auto value = [&](const TetLocator::Place& place) {
-    if (!on_vertices(method)) return phi[place.tet];
+    const float counts = simulation.etendue().in_tet(level, place.tet, method);
+    if (!on_vertices(method)) return counts * phi[place.tet];
     glm::dvec3 sum(0);
     for (int corner = 0; corner < 4; ++corner) {
       sum += place.barycentric[corner] * glm::dvec3(phi[level.tets[place.tet][corner]]);
     }
-    return glm::vec3(sum);
+    return counts * glm::vec3(sum);
   };
   std::vector<glm::vec3> found;
   found.reserve(points.size());

@@ -99,6 +99,7 @@ void ForwardScattering::write_ref(const ForwardParts& parts) {
   const gpu::TransportForwardRef ref{.vertices = level.vertices.address(),
                                      .tets = level.tets.address(),
                                      .optical = optical_.address(),
+                                     .etendue = level.etendue.address(),
                                      .tet_offset = parts.tet_offset.address(),
                                      .tet_incidence = parts.tet_incidence.address(),
                                      .deposit = parts.deposit.address(),

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "engine/reference/vertex_starts.h"
+#include "engine/solve/etendue.h"
 #include "interface/gather/gather_exitance.comp.h"
 #include "interface/gather/gather_first.comp.h"
 #include "interface/gather/gather_flow.comp.h"
@@ -12,6 +13,7 @@
 #include "interface/gather/gather_phi.comp.h"
 #include "interface/gather/gather_scale.comp.h"
 #include "interface/gather/gather_single.comp.h"
+#include "interface/gather/shared_normals.comp.h"
 #include "interface/gather/smooth_normals.comp.h"
 #include "interface/gather/uncollided.comp.h"
 
@@ -62,6 +64,17 @@ void GatherField::make_room_forward(device::Device& device, const Level& level) 
   flows_ = {device, flows * vec3_bytes, device::Place::device, "gather/flows"};
 }
 
+void GatherField::make_room_shared(device::Device& device, const Level& level) {
+  if (shared_count_ > 0) return;
+  const SharedSurface shared = shared_surface(level);
+  shared_count_ = static_cast<std::uint32_t>(shared.vertex.size());
+  shared_vertex_ = device::upload<std::uint32_t>(device, shared.vertex, "gather/vertices of shared surfaces");
+  shared_offset_ = device::upload<std::uint32_t>(device, shared.offset, "gather/offsets of shared surfaces");
+  shared_rim_ = device::upload<glm::uvec2>(device, shared.rim, "gather/rims of shared surfaces");
+  shared_normals_ = {device, level.vertex_count() * vec3_bytes, device::Place::device, "gather/shared normals"};
+  normals_behind_ = true;
+}
+
 void GatherField::record(Workspace& work, const GatherInput& input) {
   record_body(work, input);
   record_points(work, input);
@@ -85,7 +98,9 @@ void GatherField::record_single(Workspace& work, const GatherInput& input) {
 void GatherField::record_body(Workspace& work, const GatherInput& input) {
   gpu::ForwardLight forward{};
   if (input.forward != nullptr) forward = {flows_.address(), input.forward->beside()};
-  write_solid(work.recorder.device(), {input.body, input.tree.ref(), normals_.address(), forward});
+  gpu::BodyRef body = input.body;
+  body.shared_normals = shared_normals_.address();
+  write_solid(work.recorder.device(), {body, input.tree.ref(), normals_.address(), forward});
   input.tree.record(work, input.level);
   if (std::exchange(normals_behind_, false)) record_normals(work, input);
 }
@@ -95,9 +110,21 @@ void GatherField::record_normals(Workspace& work, const GatherInput& input) {
                                        .face_offset = input.level.face_offset.address(),
                                        .face_incidence = input.level.face_incidence.address(),
                                        .normals = normals_.address()};
+  if (shared_count_ > 0) record_shared_normals(work, input);
   const std::uint64_t corners = 3ull * input.level.face_count;
   work.recorder.dispatch(work.passes.of(shader::smooth_normals), normals, static_cast<std::uint32_t>(corners),
                          "smooth normals", corners * (faces_per_vertex * face_corner_bytes + vec3_bytes));
+}
+
+void GatherField::record_shared_normals(Workspace& work, const GatherInput& input) {
+  const gpu::SharedNormalsPush push{.vertices = input.level.vertices.address(),
+                                    .vertex = shared_vertex_.address(),
+                                    .offset = shared_offset_.address(),
+                                    .rim = shared_rim_.address(),
+                                    .normals = shared_normals_.address(),
+                                    .count = shared_count_};
+  work.recorder.dispatch(work.passes.of(shader::shared_normals), push, shared_count_, "smooth normals",
+                         shared_rim_.size() * 4 + shared_count_ * vec3_bytes);
 }
 
 void GatherField::write_solid(device::Device& device, const gpu::SolidRef& solid) {

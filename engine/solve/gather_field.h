@@ -40,6 +40,9 @@ class GatherField {
   // The same where light scatters forwards.
   void make_room_forward(device::Device& device, const Level& level);
 
+  // The same where bodies within others bend light.
+  void make_room_shared(device::Device& device, const Level& level);
+
   // The vertices of the level have moved.
   void moved() { normals_behind_ = true; }
 
@@ -62,6 +65,7 @@ class GatherField {
   void write_solid(device::Device& device, const gpu::SolidRef& solid);
   void record_body(Workspace& work, const GatherInput& input);
   void record_normals(Workspace& work, const GatherInput& input);
+  void record_shared_normals(Workspace& work, const GatherInput& input);
   void record_points(Workspace& work, const GatherInput& input);
   void record_uncollided(Workspace& work, const GatherInput& input);
   void record_first(Workspace& work, const GatherInput& input);
@@ -71,7 +75,10 @@ class GatherField {
 
   device::Buffer start_, nearest_;  // engine/reference/vertex_starts.h
   device::Buffer solid_on_device_, normals_, points_, gathered_, nodes_, scale_;
-  device::Buffer flows_;    // of ForwardLight
+  device::Buffer flows_;                                       // of ForwardLight
+  device::Buffer shared_vertex_, shared_offset_, shared_rim_;  // SharedSurface; made where light is bent within
+  device::Buffer shared_normals_;                              // vec3 per vertex
+  std::uint32_t shared_count_ = 0;                             // of shared_vertex_
   device::Buffer lacking_;  // vec3, at the corners of the tets, four each, W; of a correction alone
   gpu::SolidRef solid_{};
   bool normals_behind_ = true;

@@ -22,6 +22,7 @@ struct LevelBuffers {
   device::Buffer nodes;    // vec3, mm; inner nodes, then surface nodes; for the graph methods, made at first use
   device::Buffer rest;     // nodes where the file has them, as far as optical goes: the material moves with the body
   device::Buffer optical;  // Optical per node; of the tets alone, or one for all (Coefficients), where that is enough
+  device::Buffer etendue;  // float per tet (shaders/source/inner_surface.glsl); none: 1 everywhere
   bool even = false;       // optical is the same everywhere, and read from the first
   gpu::LeastTet least{};   // of the tets in the present shape
   bool inverted = false;   // some of them are turned inside out

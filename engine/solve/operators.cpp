@@ -104,6 +104,15 @@ void Operators::put_back() {
   }
 }
 
+void Operators::measure_anew() {
+  for (auto& [key, of_key] : levels_) {
+    for (OfLevel& level : of_key) {
+      level.op->measured = false;
+      level.op->assembled.reset();
+    }
+  }
+}
+
 void Operators::moved(std::uint32_t number) {
   for (auto& [key, of_key] : levels_) {
     if (number >= of_key.size()) continue;

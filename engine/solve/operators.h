@@ -53,6 +53,8 @@ class Operators {
 
   // What was made is made again.
   void forget() { levels_.clear(); }
+  // Volumes count for something else.
+  void measure_anew();
 
   // All vertices lie as in the file again.
   void put_back();

@@ -38,6 +38,7 @@ std::optional<SeenRows> Simulation::seen() {
 void Simulation::set_material(const gpu::Material& material) {
   implementation_->coefficients.set(material);
   implementation_->disassemble();
+  set_etendue({});
 }
 
 void Simulation::set_angles(const ScatteringAngles& angles) {
@@ -58,6 +59,13 @@ void Simulation::set_optical(std::uint32_t level, std::span<const gpu::Optical> 
   }
   implementation_->coefficients.set(level, optical, eta, implementation_->shape.samples(level), elsewhere);
   implementation_->disassemble();
+}
+
+void Simulation::set_etendue(std::span<const float> by_body) {
+  Implementation& self = *implementation_;
+  if (!self.etendue.set(self.device, self.shape.levels(), by_body, self.levels)) return;
+  self.operators.measure_anew();
+  if (self.correction) self.correction->forget();
 }
 
 void Simulation::set_edits(std::span<const Edit> edits) {
@@ -227,7 +235,20 @@ WalkedExitance Simulation::walked_exitance() const {
 }
 
 std::vector<glm::vec3> Simulation::phi() const {
-  return implementation_->phi();
+  std::vector<glm::vec3> found = implementation_->basic_phi();
+  if (!implementation_->etendue.bends()) return found;
+  const std::vector<float> counts =
+      implementation_->etendue.at_carriers(present_level(), implementation_->solved->method);
+  for (std::size_t i = 0; i < found.size(); ++i) found[i] *= counts[i];
+  return found;
+}
+
+std::vector<glm::vec3> Simulation::basic_phi() const {
+  return implementation_->basic_phi();
+}
+
+const Etendue& Simulation::etendue() const {
+  return implementation_->etendue;
 }
 
 std::vector<glm::vec3> Simulation::exitance_on(std::uint32_t level) {

@@ -29,6 +29,7 @@
 
 namespace quadgraph {
 
+class Etendue;
 class GatherField;
 struct PerturbedSolution;
 struct Workspace;
@@ -77,6 +78,10 @@ class Simulation {
   // The same with an index of refraction for each body.
   void set_optical(std::uint32_t level, std::span<const gpu::Optical> optical, std::span<const float> eta,
                    std::span<const gpu::Optical> elsewhere = {});
+
+  // Squares of the indices of refraction over those of the outermost bodies around, by body; all 1, or none, until this
+  // is set, and after set_material. Where another it is set behind set_optical on all levels.
+  void set_etendue(std::span<const float> by_body);
 
   // By which angles light scatters, of what set_optical has set on all levels.
   void set_angles(const ScatteringAngles& angles);
@@ -160,7 +165,9 @@ class Simulation {
 
   // Results of the last solve, level 0.
   SurfaceField surface_field() const;
-  std::vector<glm::vec3> phi() const;  // per carrier of the method
+  std::vector<glm::vec3> phi() const;        // per carrier of the method
+  std::vector<glm::vec3> basic_phi() const;  // the same, of the basic fluence
+  const Etendue& etendue() const;
 
   // What the walks found that certified the last solve. Throws InputError where none did.
   WalkedExitance walked_exitance() const;

@@ -17,6 +17,7 @@
 #include "engine/solve/carried_correction.h"
 #include "engine/solve/certificate.h"
 #include "engine/solve/coefficients.h"
+#include "engine/solve/etendue.h"
 #include "engine/solve/gather_field.h"
 #include "engine/solve/inter_reflection.h"
 #include "engine/solve/level_solver.h"
@@ -44,6 +45,7 @@ struct Simulation::Implementation {
   Workspace work;
   SurfaceResults results;
   Coefficients coefficients;
+  Etendue etendue;
   InterReflection exchange;
   std::optional<BodyTree> tree;                   // of level 0, made at first use
   std::optional<GatherField> gather;              // the same
@@ -288,6 +290,7 @@ struct Simulation::Implementation {
   GatherField& gather_room() {
     if (!tree) tree.emplace(device, shape.levels()[0], "gather");
     if (!gather) gather.emplace(device, shape.levels()[0], *tree);
+    if (etendue.bends()) gather->make_room_shared(device, shape.levels()[0]);
     return *gather;
   }
 
@@ -361,8 +364,8 @@ struct Simulation::Implementation {
 
   glm::vec3 scale() const { return device::download<gpu::Scale>(device, work.scale)[0].scale; }
 
-  // W/mm^2 per carrier.
-  std::vector<glm::vec3> phi() {
+  // W/mm^2 per carrier, of the basic fluence.
+  std::vector<glm::vec3> basic_phi() {
     const OperatorBuffers& rows = operators.at(solved_key(), 0);
     const std::size_t moments = !corrected && rows.model == Model::sp3 ? 2 : 1;
     const auto x = device::download<glm::vec3>(device, corrected ? correction->fluence() : rows.x);

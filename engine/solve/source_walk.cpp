@@ -1,6 +1,7 @@
 #include "engine/solve/source_walk.h"
 
 #include <cmath>
+#include <cstring>
 #include <utility>
 
 #include "engine/base/error.h"
@@ -71,6 +72,7 @@ SourceWalk::SourceWalk(device::Device& device, const Level& level, std::uint32_t
                      " tets and outside faces; the buried source takes up to " + std::to_string(most_nodes));
   }
   cells_ = device::upload<gpu::TetCell>(device, cells_of(level), "geometry/" + prefix_ + "cells");
+  body_on_device_ = {device, sizeof(gpu::BodyRef), device::Place::device, "walk/" + prefix_ + "body"};
 }
 
 void SourceWalk::record_cells(Workspace& work, const LevelBuffers& level) {
@@ -92,6 +94,8 @@ gpu::BodyRef SourceWalk::body(const LevelBuffers& level, bool even) const {
           .face_tets = level.face_tets.address(),
           .face_kinds = level.face_kind.address(),
           .optical = level.optical.address(),
+          .etendue = level.etendue.address(),
+          .shared_normals = 0,
           .tet_count = level.tet_count,
           .face_count = level.face_count,
           .flags = even ? gpu::BODY_EVEN : 0u};
@@ -141,9 +145,14 @@ void SourceWalk::make_room(device::Device& device, const LevelBuffers& level, Me
   sums_again_.make_room(device, prefix_);
 }
 
-gpu::WalkSourcePush SourceWalk::push(const Workspace& work, const LevelBuffers& level, const BeamBuffers& beams,
-                                     const WalkTask& task) const {
-  return {.body = body(level, task.even),
+gpu::WalkSourcePush SourceWalk::push(Workspace& work, const LevelBuffers& level, const BeamBuffers& beams,
+                                     const WalkTask& task) {
+  const gpu::BodyRef walked = body(level, task.even);
+  if (std::memcmp(&walked, &body_, sizeof(walked)) != 0) {
+    device::write_bytes(work.recorder.device(), body_on_device_, std::as_bytes(std::span(&walked, 1)));
+    body_ = walked;
+  }
+  return {.body = body_on_device_.address(),
           .beams = beams.on_device.address(),
           .beam_q = level.beam_q.address(),
           .scale = work.scale.address(),

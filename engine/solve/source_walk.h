@@ -103,15 +103,15 @@ class SourceWalk {
 
   static std::size_t carrier(Method method) { return on_vertices(method) ? 0 : 1; }
 
-  gpu::WalkSourcePush push(const Workspace& work, const LevelBuffers& level, const BeamBuffers& beams,
-                           const WalkTask& task) const;
+  gpu::WalkSourcePush push(Workspace& work, const LevelBuffers& level, const BeamBuffers& beams, const WalkTask& task);
 
   std::string prefix_;
   std::array<bool, 2> walked_ = {false, false};  // by carrier
   bool mean_rays_ = false;                       // in what was walked
   bool again_ = false;                           // light that entered again is in the results
-  device::Buffer cells_;
-  bool moved_ = true;  // cells_ has another shape
+  device::Buffer cells_, body_on_device_;
+  gpu::BodyRef body_{};  // as on the device
+  bool moved_ = true;    // cells_ has another shape
   // Results for the scene's light; by carrier, made at first use.
   std::array<device::Buffer, 2> deposits_;
   device::Buffer unscattered_;

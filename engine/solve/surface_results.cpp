@@ -183,24 +183,24 @@ void SurfaceResults::record_vertex_unscattered(Workspace& work, const Solved& so
 
 void SurfaceResults::record_energy(Workspace& work, const Solved& solved, const FirstMoment& fluence) {
   const LevelBuffers& level = solved.level;
-  const gpu::EnergyPush push{.vertices = level.vertices.address(),
-                             .tets = level.tets.address(),
-                             .faces = level.faces.address(),
-                             .face_kinds = level.face_kind.address(),
-                             .optical = level.optical.address(),
-                             .x = fluence.x,
-                             .to_phi = fluence.to_phi,
-                             .q = level.q.address(),
-                             .exitance = exitance_.address(),
-                             .scale = work.scale.address(),
-                             .clip = clip_.address(),
-                             .face_area = face_area_.address(),
-                             .sums = sums_.address(),
-                             .tet_count = level.tet_count,
-                             .face_count = level.face_count,
-                             .fem = is_on_vertices(solved.method),
-                             .even = level.even ? 1u : 0u,
-                             .least = level.least};
+  const gpu::EnergyPush push{
+      .vertices = level.vertices.address(),
+      .tets = level.tets.address(),
+      .faces = level.faces.address(),
+      .face_kinds = level.face_kind.address(),
+      .optical = level.optical.address(),
+      .etendue = conserves(solved.method) ? level.etendue.address() : 0,
+      .x = fluence.x,
+      .to_phi = fluence.to_phi,
+      .q = level.q.address(),
+      .exitance = exitance_.address(),
+      .scale = work.scale.address(),
+      .clip = clip_.address(),
+      .face_area = face_area_.address(),
+      .sums = sums_.address(),
+      .tet_count = level.tet_count,
+      .flags = (on_vertices(solved.method) ? gpu::ENERGY_ON_VERTICES : 0u) | (level.even ? gpu::ENERGY_EVEN : 0u),
+      .least = level.least};
   const std::uint64_t bytes = level.tet_count * (sizeof(glm::uvec4) + 5 * vec3_bytes + 4 * solved.op.field_bytes()) +
                               level.face_count * (sizeof(glm::uvec3) + sizeof(float) + 6 * vec3_bytes) + sums_.size();
   work.recorder.dispatch(work.passes.of(shader::energy, fluence.model), push, energy_elements(level), "energy", bytes);

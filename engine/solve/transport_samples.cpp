@@ -158,6 +158,7 @@ void TransportSamples::record_mass(const TransportParts& parts) {
   const gpu::TransportMassPush push{.vertices = level.vertices.address(),
                                     .tets = level.tets.address(),
                                     .optical = optical(parts).address(),
+                                    .etendue = level.etendue.address(),
                                     .tet_offset = tet_offset_.address(),
                                     .tet_incidence = tet_incidence_.address(),
                                     .mass = mass_.address(),
@@ -203,6 +204,7 @@ void TransportSamples::record_weights(const TransportParts& parts) {
   const gpu::TransportWeightsPush weights{.vertices = level.vertices.address(),
                                           .tets = level.tets.address(),
                                           .optical = level.optical.address(),
+                                          .etendue = level.etendue.address(),
                                           .nearest = parts.nearest.address(),
                                           .boundary = boundary_.size() > 0 ? boundary_.address() : 0,
                                           .tet_offset = tet_offset_.address(),
@@ -235,7 +237,7 @@ void TransportSamples::record_carried(const TransportParts& parts, const BodyBou
 void TransportSamples::record_source(const TransportParts& parts, const TransportShares& shares) {
   Workspace& work = parts.work;
   const LevelBuffers& level = parts.level;
-  const gpu::TransportSourcePush push{.vertices = level.vertices.address(),
+  const gpu::TransportSourcePush push{.weights = weights_.address(),
                                       .tets = level.tets.address(),
                                       .optical = optical(parts).address(),
                                       .fluence = fluence_.address(),
@@ -256,7 +258,7 @@ void TransportSamples::record_source(const TransportParts& parts, const Transpor
   work.recorder.dispatch(work.passes.of(shader::transport_source), push, std::max(level.tet_count, level.vertex_count),
                          "transport source",
                          4 * fluence_.size() + deposit_.size() + 3 * source_before_.size() +
-                             level.tet_count * (sizeof(glm::uvec4) + 8 * vec3_bytes));
+                             level.tet_count * (sizeof(glm::uvec4) + sizeof(glm::vec2) + 4 * vec3_bytes));
   if (parts.forward()) forward_->record_flow(forward_parts(parts), shares.present, shares.before);
 }
 
@@ -311,6 +313,7 @@ void TransportSamples::record_totals(const TransportParts& parts) {
   const gpu::TransportTotalsPush totals{.vertices = level.vertices.address(),
                                         .tets = level.tets.address(),
                                         .optical = optical(parts).address(),
+                                        .etendue = level.etendue.address(),
                                         .fluence = fluence_.address(),
                                         .source = source_before_.address(),
                                         .books = books_.address(),

@@ -5,6 +5,7 @@
 #include "engine/base/text.h"
 #include "engine/derivative/forward_model.h"
 #include "engine/render/engine.h"
+#include "engine/solve/etendue.h"
 #include "engine/solve/fluence.h"
 #include "python/bindings/bindings.h"
 
@@ -23,6 +24,13 @@ double one_index(std::span<const float> eta, const std::vector<std::string>& bod
                      "file of one body");
   }
   return static_cast<double>(eta[0]);
+}
+
+void check_within(const Simulation& simulation) {
+  if (!simulation.etendue().bends()) return;
+  throw InputError(
+      "derivatives: found bodies within others with an index of refraction of their own, allowed is one index for all "
+      "bodies: give them the eta of the body around them");
 }
 
 // The model and what it reads.
@@ -47,6 +55,7 @@ class BoundModel {
     if (power) at.power = vectors(*power, beams_.size(), "power");
     std::vector<BeamLight> lights;
     for (const LevelBeam& beam : beams_) lights.push_back({beam.way, beam.quarters});
+    check_within(simulation);
     options.eta = one_index(simulation.eta(), engine.graph().bodies());
     options.check = heed_signals;
     const py::gil_scoped_release release;

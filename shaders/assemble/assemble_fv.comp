@@ -15,6 +15,7 @@ struct AssembleFvPush {
   Uvec4s links;
   Vec3s nodes;
   Opticals optical;
+  Floats etendue;  // as of BodyRef
   Vec3s to_phi;
   Uints face_kinds;
   Boundaries boundaries;  // by body
@@ -33,6 +34,10 @@ float height(vec3 twice_area, vec3 away, float least) {
   return max(abs(dot(twice_area, away)), least);
 }
 
+vec3 conduction(uint t) {
+  return number_or_one(push.etendue, t) * kappa(push.optical.at[t]);
+}
+
 // The link of tet t across face k: area / (d_i/kappa_i + d_j/kappa_j), mm^2, or area kappa_i / d_i to a surface node.
 vec3 conductance(uint t, uint k, out float area) {
   uvec4 tet = push.tets.at[t];
@@ -43,10 +48,10 @@ vec3 conductance(uint t, uint k, out float area) {
   area = 0.5 * size;
   float least = push.least.quality * size * sqrt(size);
   float height_t = height(twice_area, push.nodes.at[t] - point, least);
-  vec3 resistance = vec3(height_t) / kappa(push.optical.at[t]);
+  vec3 resistance = vec3(height_t) / conduction(t);
   if (j < push.tet_count) {
     float height_j = height(twice_area, push.nodes.at[j] - point, least);
-    resistance += vec3(height_j) / kappa(push.optical.at[j]);
+    resistance += vec3(height_j) / conduction(j);
   }
   return vec3(area * size) / resistance;
 }
@@ -84,7 +89,7 @@ void main() {
   Entry row_sum;
   if (i < push.tet_count) {
     Optical optical = push.optical.at[i];
-    float size = volume(i);
+    float size = number_or_one(push.etendue, i) * volume(i);
     row_sum = entry_of(vec3(0), optical.sigma_a * size, relaxation_of(optical) * size);
   } else {
     uint face = i - push.tet_count;

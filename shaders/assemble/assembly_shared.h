@@ -8,7 +8,8 @@
 namespace quadgraph::gpu {
 #endif
 
-// Floats of a tet's shape: grad l_i . grad l_j V of its edges 01, 02, 03, 12, 13, 23 (mm), and its volume (mm^3).
+// Floats of a tet's shape, times its etendue: grad l_i . grad l_j V of its edges 01, 02, 03, 12, 13, 23 (mm), and its
+// volume (mm^3).
 const uint TET_SHAPE = 7u;
 
 // The elements around an edge: tet * 8 + edge of the tet, or face * 8 + RING_FACE.

@@ -10,6 +10,7 @@ struct ShapePush {
   Vec3s vertices;
   Uvec4s tets;
   Uvec3s faces;
+  Floats etendue;  // as of BodyRef
   Floats tet_shape;
   Floats face_area;  // mm^2
   uint tet_count;
@@ -28,7 +29,7 @@ void measure_tet(uint t) {
   vec3 n0 = -(n1 + n2 + n3);
   float squares = dot(n0, n0) + dot(n1, n1) + dot(n2, n2) + dot(n3, n3);
   float six_volume = bounded_six_volume(dot(e1, n1), squares, push.least);
-  float factor = 1.0 / (6.0 * six_volume);
+  float etendue = number_or_one(push.etendue, t), factor = etendue / (6.0 * six_volume);
   uint at = TET_SHAPE * t;
   push.tet_shape.at[at] = factor * dot(n0, n1);
   push.tet_shape.at[at + 1u] = factor * dot(n0, n2);
@@ -36,7 +37,7 @@ void measure_tet(uint t) {
   push.tet_shape.at[at + 3u] = factor * dot(n1, n2);
   push.tet_shape.at[at + 4u] = factor * dot(n1, n3);
   push.tet_shape.at[at + 5u] = factor * dot(n2, n3);
-  push.tet_shape.at[at + 6u] = six_volume / 6.0;
+  push.tet_shape.at[at + 6u] = etendue * six_volume / 6.0;
 }
 
 void main() {

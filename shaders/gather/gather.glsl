@@ -16,6 +16,8 @@
 #include "gather/facets.glsl"
 #include "gather/gather_shared.h"
 #include "material/fresnel.glsl"
+#include "shared/creases.h"
+#include "source/inner_surface.glsl"
 
 // Where a ray leaves the body, to go on outside.
 struct Escape {
@@ -118,6 +120,38 @@ LocalLight light_against(TetPoint at, vec3 direction) {
   return light;
 }
 
+// Unit normal, onward, where a ray leaves a tet for another body by the face opposite a corner: of the smooth surface
+// that these share, as far as no crease parts it from the face.
+vec3 shared_normal(TetPoint at, uint place) {
+  vec3 flat_normal = normal_across(at.tet, place), sum = vec3(0);
+  uvec4 ids = BODY.tets.at[at.tet];
+  for (uint k = 0u; k < 4u; ++k) {
+    if (k == place) continue;
+    vec3 normal = BODY.shared_normals.at[ids[k]];
+    if (dot(normal, flat_normal) < 0.0) normal = -normal;
+    sum += at.l[k] * mix(flat_normal, normal, smooth_share(dot(normal, flat_normal)));
+  }
+  return normalize(sum);
+}
+
+// What a view ray does where it leaves a tet for a body of another index: it goes on through unless all is mirrored.
+// Light mirrored beside that counts as even. Returns whether it goes through; bars its way where not.
+bool passes(inout TetPoint at, uint place, uint across, LocalLight here, inout vec3 direction, inout vec3 left,
+            inout vec3 radiance) {
+  if (!bends(at.tet, across)) return true;
+  InnerSurface met = inner_surface(at.tet, across, direction, shared_normal(at, place));
+  vec3 flat_normal = normal_across(at.tet, place);
+  if (met.reflected == 1.0) {
+    direction = -outward_of(flat_normal, -mirrored(met, direction));
+    bar(at, place);
+    return false;
+  }
+  radiance += met.reflected * left * even_radiance(at.tet, here);
+  left *= 1.0 - met.reflected;
+  direction = outward_of(flat_normal, bent(met, direction));
+  return true;
+}
+
 // One step of transport: collided and uncollided fluence scattered into a ray that goes from its point into the body.
 Gathered gather(TetPoint at, vec3 direction, inout Facets facets) {
   Gathered sum = Gathered(vec3(0), vec3(0), NO_ESCAPE, NO_ESCAPE);
@@ -137,7 +171,8 @@ Gathered gather(TetPoint at, vec3 direction, inout Facets facets) {
     if (ends(left, sum.radiance, last, lost)) break;
     uint crossing = crossing_at(at.tet, exit.place), across = crossing >> CROSSING_BITS;
     if (across < BODY.tet_count) {
-      enter(at, exit.place, crossing);
+      if (passes(at, exit.place, across, here, direction, left, sum.radiance)) enter(at, exit.place, crossing);
+      if (uvec2(BODY.etendue) != uvec2(0)) here = light_against(at, direction);
       continue;
     }
     bar(at, exit.place);

@@ -29,7 +29,8 @@ LocalLight fields_at(uint tet, vec4 l) {
     depth += l[k] * POINTS.at[ids[k]].depth;
     uncollided += l[k] * POINTS.at[ids[k]].uncollided;
   }
-  return LocalLight(phi.xyz, entry.xyz, depth.xyz, uncollided.xyz);
+  float basic = 1.0 / number_or_one(BODY.etendue, tet);
+  return LocalLight(phi.xyz, basic * entry.xyz, depth.xyz, basic * uncollided.xyz);
 }
 
 // Of light that has not scattered, what is made of mean factors held to what is linear between the corners: as it is

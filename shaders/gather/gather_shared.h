@@ -13,7 +13,7 @@ namespace quadgraph::gpu {
 // uncollided fluence is entry exp(-depth), which is exact for a beam behind a flat face, but held to what is linear
 // between vertices (gather_fields.glsl).
 struct GatherPoint {
-  vec4 phi;         // W/mm^2, fluence of light that has scattered
+  vec4 phi;         // W/mm^2, basic fluence (engine/solve/etendue.h) of light that has scattered
   vec4 entry;       // W/mm^2, fluence of light that has not, as if nothing had been lost on its way
   vec4 depth;       // optical depth of that way
   vec4 uncollided;  // W/mm^2, entry exp(-depth)

@@ -38,7 +38,9 @@ struct BodyRef {
   QG_REF(Uvec3s) faces;
   QG_REF(Uints) face_tets;
   QG_REF(Uints) face_kinds;
-  QG_REF(Opticals) optical;  // per tet
+  QG_REF(Opticals) optical;      // per tet
+  QG_REF(Floats) etendue;        // per tet (inner_surface.glsl); null: 1 everywhere
+  QG_REF(Vec3s) shared_normals;  // per vertex, of surfaces that bodies share the unit normal; null where etendue is
   uint tet_count;
   uint face_count;
   uint flags;  // BODY_*

@@ -48,4 +48,9 @@ vec3 element_or_one(Vec3s a, uint i) {
   return a.at[i];
 }
 
+float number_or_one(Floats a, uint i) {
+  if (uvec2(a) == uvec2(0)) return 1.0;
+  return a.at[i];
+}
+
 #endif

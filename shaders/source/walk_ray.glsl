@@ -1,11 +1,12 @@
 // One ray of the buried source through the tets. The shader that includes it defines first BODY (tet_ray.glsl) and push
-// constants `push`, which have deposit and deposits as WalkSourcePush does, and defines meet_surface behind it. It may
-// define
+// constants `push`, which have deposit and deposits as WalkSourcePush does, and defines meet_surface and next_chance
+// behind it. It may define
 //   WALK_TOWARDS  where power is added up by its direction, as TransportForwardRef has it; or null
 #ifndef QUADGRAPH_WALK_RAY_GLSL
 #define QUADGRAPH_WALK_RAY_GLSL
 
 #include "source/fixed_point.glsl"
+#include "source/inner_surface.glsl"
 #include "source/light_ray.glsl"
 #include "source/walk_shared.h"
 
@@ -99,6 +100,16 @@ vec3 end_share(Optical optical) {
 // At an outside face from inside.
 void meet_surface(inout Ray ray, uint face);
 
+// Even in [0, 1).
+float next_chance();
+
+// Whether the ray goes into the tet across the face opposite a corner; else it is mirrored there.
+bool passes(inout Ray ray, uint place, uint across) {
+  if (!bends(ray.at.tet, across) || goes_through(ray.at.tet, place, across, next_chance(), ray.direction)) return true;
+  bar(ray.at, place);
+  return false;
+}
+
 // Follows a ray until its light is spent; returns how many tets it crossed.
 uint walk(Ray ray) {
   vec3 end = end_share(optical_in(ray.at.tet)) * ray.power;
@@ -116,6 +127,7 @@ uint walk(Ray ray) {
     if (spent && extinction(optical) != vec3(0)) break;
     uint crossing = crossing_at(ray.at.tet, exit.place), across = crossing >> CROSSING_BITS;
     if (across < BODY.tet_count) {
+      if (!passes(ray, exit.place, across)) continue;
       flush(ray.at.tet, exit.place, pending);
       carry_on(pending, exit.place, crossing);
       enter(ray.at, exit.place, crossing);

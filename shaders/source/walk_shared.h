@@ -38,7 +38,7 @@ const float WALK_PALE = 0.9f;
 // walk_source.comp: follows the rays of beams. One invocation per face and beam; of a Lambertian beam, one per face and
 // ray of the bundle.
 struct WalkSourcePush {
-  BodyRef body;
+  QG_REF(BodyRefs) body;  // one
   QG_REF(Beams) beams;
   QG_REF(Floats) beam_q;  // of all
   QG_REF(Scales) scale;

@@ -6,9 +6,17 @@
 layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { WalkSourcePush push; };
 
-#define BODY push.body
+BodyRef body;
+#define BODY body
 #include "source/walk_ray.glsl"
 #include "source/walk_start.glsl"
+#include "shared/random.glsl"
+
+uint chance_state;
+
+float next_chance() {
+  return uniform_number(chance_state);
+}
 
 uint segments;  // tets, by this invocation's rays
 
@@ -37,9 +45,11 @@ uint rays_of(uint beam) {
 
 void main() {
   uint i = gl_GlobalInvocationID.x;
+  body = push.body.at[0];
   absorbed = vec3(0);
   unscattered = vec3(0);
   segments = 0u;
+  chance_state = hash(i);
   uint per_face = 0u;
   for (uint b = 0u; b < push.beam_count; ++b) per_face += rays_of(b);
   if (i >= BODY.face_count * per_face) return;

@@ -13,6 +13,7 @@ struct EnergyPush {
   Uvec3s faces;
   Uints face_kinds;
   Opticals optical;
+  Floats etendue;  // as of BodyRef
   Fields x;
   Vec3s to_phi;
   Vec3s q;
@@ -22,9 +23,7 @@ struct EnergyPush {
   Floats face_area;  // mm^2, written
   EnergySumsArray sums;
   uint tet_count;
-  uint face_count;
-  uint fem;
-  uint even;  // 1: optical is the same everywhere
+  uint flags;  // ENERGY_*
   LeastTet least;
 };
 layout(push_constant, scalar) uniform Block { EnergyPush push; };
@@ -38,20 +37,20 @@ vec3 absorbed(uint tet) {
   vec3 p = push.vertices.at[corners.x];
   vec3 e1 = push.vertices.at[corners.y] - p, e2 = push.vertices.at[corners.z] - p;
   vec3 e3 = push.vertices.at[corners.w] - p;
-  float volume = tet_volume(e1, e2, e3, push.least);
+  float volume = number_or_one(push.etendue, tet) * tet_volume(e1, e2, e3, push.least);
   vec3 phi;
-  if (push.fem == 1u) {
+  if ((push.flags & ENERGY_ON_VERTICES) != 0u) {
     phi = 0.25 * (phi_at(corners.x) + phi_at(corners.y) + phi_at(corners.z) + phi_at(corners.w));
   } else {
     phi = phi_at(tet);
   }
-  return push.optical.at[push.even == 1u ? 0u : tet].sigma_a * phi * push.scale.at[0].scale * volume;
+  return push.optical.at[(push.flags & ENERGY_EVEN) != 0u ? 0u : tet].sigma_a * phi * push.scale.at[0].scale * volume;
 }
 
 void main() {
   EnergySums sums = EnergySums(vec3(0), vec3(0), vec3(0));
   EACH(i, push.tet_count) sums.absorbed += absorbed(i);
-  EACH(i, push.face_count) {
+  EACH(i, faces_in(push.face_kinds)) {
     uvec3 corners = push.faces.at[i];
     vec3 p = push.vertices.at[corners.x];
     float area = 0.5 * length(cross(push.vertices.at[corners.y] - p, push.vertices.at[corners.z] - p));

@@ -14,6 +14,9 @@ struct Clip {
   vec3 share;   // of the positive exitance that it gave up
 };
 
+const uint ENERGY_ON_VERTICES = 1u;  // the carriers are those of tets
+const uint ENERGY_EVEN = 2u;         // the coefficients are the same everywhere
+
 // Sums of one workgroup of energy.comp, and of energy_total.comp those of every WORKGROUP_SIZE-th of them.
 struct EnergySums {
   vec3 entered;   // W

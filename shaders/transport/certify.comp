@@ -141,6 +141,11 @@ void wander(Ray ray, uint channel) {
       ray.at.l = exit_point(ray.at, exit);
       uint crossing = crossing_at(ray.at.tet, exit.place), across = crossing >> CROSSING_BITS;
       if (across < BODY.tet_count) {
+        if (bends(ray.at.tet, across) &&
+            !goes_through(ray.at.tet, exit.place, across, uniform_number(state), ray.direction)) {
+          bar(ray.at, exit.place);
+          continue;
+        }
         enter(ray.at, exit.place, crossing);
         continue;
       }

@@ -5,7 +5,7 @@
 #include "material/fresnel.glsl"
 #include "shared/beam_shared.h"
 #include "shared/environment_picture.h"
-#include "transport/random.glsl"
+#include "shared/random.glsl"
 
 // Directions that one is drawn from, by what it brings; where a sky is even, it is taken as it comes.
 const uint SKY_CANDIDATES = 8u;

@@ -2,7 +2,7 @@
 #ifndef QUADGRAPH_PHASE_FUNCTION_GLSL
 #define QUADGRAPH_PHASE_FUNCTION_GLSL
 
-#include "transport/random.glsl"
+#include "shared/random.glsl"
 
 const float ALL_AROUND = 6.2831853;
 

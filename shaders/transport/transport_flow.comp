@@ -50,7 +50,7 @@ void see_tet(uint tet) {
   Optical o = optical_of(tet);
   vec3 sum = first_of(forward.deposit, tet), c = 3.0 * cosine_beside_peak(forward.beside.g);
   mat3 directions = directions_of(sum, first_towards(tet));
-  float per_volume = per_volume_of(volume_of(forward.vertices, corners));
+  float per_volume = per_volume_of(number_or_one(forward.etendue, tet) * volume_of(forward.vertices, corners));
   for (uint k = 0u; k < 4u; ++k) {
     vec3 first = first_at(forward.deposit, tet, k, sum, per_volume);
     mat3 flow = scaled_by(c * o.sigma_s_prime, flux_at(push.flux, corners[k])) + scaled_by(c * first, directions);

@@ -35,15 +35,16 @@ bool starts() {
   return uvec2(push.swept) == uvec2(0);
 }
 
-// Flux of the fluence in a tet, times its volume; sigma: extinction less what scatters on, 1/mm. Nowhere more than the
+// Flux of the fluence in a tet, times its volume and etendue; sigma: extinction less what scatters on, 1/mm. Nowhere more than the
 // fluence itself.
-mat3 flux_in(uvec4 corners, vec3 sigma, out float volume) {
+mat3 flux_in(uint tet, vec3 sigma, out float volume) {
+  uvec4 corners = forward.tets.at[tet];
   vec3 p = forward.vertices.at[corners.x], f = fluence(corners.x);
   vec3 e1 = forward.vertices.at[corners.y] - p, e2 = forward.vertices.at[corners.z] - p;
   vec3 e3 = forward.vertices.at[corners.w] - p;
   vec3 f1 = fluence(corners.y), f2 = fluence(corners.z), f3 = fluence(corners.w);
   float six = dot(e1, cross(e2, e3));
-  volume = abs(six) / 6.0;
+  volume = number_or_one(forward.etendue, tet) * abs(six) / 6.0;
   if (six == 0.0) return mat3(0.0);
   vec3 n1 = cross(e2, e3) / six, n2 = cross(e3, e1) / six, n3 = cross(e1, e2) / six;
   mat3 slope = outerProduct(f1 - f, n1) + outerProduct(f2 - f, n2) + outerProduct(f3 - f, n3);
@@ -62,7 +63,7 @@ mat3 flux_around(uint v) {
     Optical o = optical_of(tet);
     vec3 sigma = max(o.sigma_a + (1.0 - c) * o.sigma_s_prime, vec3(1e-20));
     float volume;
-    sum += flux_in(forward.tets.at[tet], sigma, volume);
+    sum += flux_in(tet, sigma, volume);
     around += volume;
     if (starts()) sum += scaled_by(c / sigma, first_towards(tet));
   }

@@ -9,6 +9,7 @@ struct TransportMassPush {
   Vec3s vertices;
   Uvec4s tets;
   Opticals optical;
+  Floats etendue;  // as of BodyRef
   Uints tet_offset;  // tets around each vertex
   Uints tet_incidence;
   Vec3s mass;
@@ -26,8 +27,8 @@ void main() {
     uvec4 corners = push.tets.at[tet];
     vec3 p = push.vertices.at[corners.x];
     vec3 e1 = push.vertices.at[corners.y] - p, e2 = push.vertices.at[corners.z] - p;
-    float volume = abs(dot(e1, cross(e2, push.vertices.at[corners.w] - p))) / 6.0;
-    mass += 0.25 * volume * push.optical.at[push.even == 1u ? 0u : tet].sigma_s_prime;
+    float six = number_or_one(push.etendue, tet) * abs(dot(e1, cross(e2, push.vertices.at[corners.w] - p)));
+    mass += six / 24.0 * push.optical.at[push.even == 1u ? 0u : tet].sigma_s_prime;
   }
   push.mass.at[v] = mass;
 }

@@ -168,6 +168,11 @@ bool goes_on(inout Ray ray, Way way) {
   if (!way.found || ++ray.steps == MAX_WALK_STEPS) return false;
   uint across = way.crossing >> CROSSING_BITS;
   if (across < BODY.tet_count) {
+    if (bends(ray.at.tet, across) &&
+        !goes_through(ray.at.tet, way.place, across, uniform_number(ray.state), ray.direction)) {
+      bar(ray.at, way.place);
+      return survives(ray);
+    }
     enter(ray.at, way.place, way.crossing);
   } else {
     bar(ray.at, way.place);

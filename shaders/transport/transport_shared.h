@@ -82,6 +82,7 @@ struct TransportForwardRef {
   QG_REF(Vec3s) vertices;
   QG_REF(Uvec4s) tets;
   QG_REF(Opticals) optical;  // of transport_optical.comp: per tet, or one
+  QG_REF(Floats) etendue;    // as of BodyRef
   QG_REF(Uints) tet_offset;  // tets around each vertex
   QG_REF(Uints) tet_incidence;
   QG_REF(Uints) deposit;  // fixed point, at the corners of the tets, four each: power scattered for the first time

@@ -9,7 +9,7 @@ layout(local_size_x = WORKGROUP_SIZE) in;
 // known. All that is sampled is linear in it, so that what is known of the one before is used again, and the noise is that
 // of the difference (docs/physics.md, "Transport correction").
 struct TransportSourcePush {
-  Vec3s vertices;
+  Vec2s weights;  // of transport_weights.comp
   Uvec4s tets;
   Opticals optical;
   Vec3s fluence;         // at the vertices
@@ -58,7 +58,7 @@ void main() {
   }
   if (i >= push.tet_count) return;
   uvec4 corners = push.tets.at[i];
-  float per_volume = per_volume_of(volume_of(push.vertices, corners));
+  float per_volume = per_volume_of(push.weights.at[i].y);
   vec3 sum = first_of(push.deposit, i);
   push.sources.at[i].source_0 = vec4(source_at(i, 0u, corners.x, sum, per_volume), 0.0);
   push.sources.at[i].source_1 = vec4(source_at(i, 1u, corners.y, sum, per_volume), 0.0);

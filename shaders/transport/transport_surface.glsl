@@ -7,9 +7,9 @@
 #define QUADGRAPH_TRANSPORT_SURFACE_GLSL
 
 #include "material/fresnel.glsl"
+#include "source/inner_surface.glsl"
 #include "source/lambertian.glsl"
-#include "source/tet_ray.glsl"
-#include "transport/random.glsl"
+#include "shared/random.glsl"
 #include "transport/transport_shared.h"
 
 #ifndef FIELD

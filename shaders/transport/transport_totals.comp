@@ -9,6 +9,7 @@ struct TransportTotalsPush {
   Vec3s vertices;
   Uvec4s tets;
   Opticals optical;
+  Floats etendue;  // as of BodyRef
   Vec3s fluence;  // at the vertices
   Vec3s source;   // light that is scattered, four per tet, W/mm^3
   TransportBooks books;
@@ -24,7 +25,8 @@ void main() {
     uvec4 corners = push.tets.at[i];
     vec3 p = push.vertices.at[corners.x];
     vec3 e1 = push.vertices.at[corners.y] - p, e2 = push.vertices.at[corners.z] - p;
-    float quarter = abs(dot(e1, cross(e2, push.vertices.at[corners.w] - p))) / 24.0;
+    float six = number_or_one(push.etendue, i) * abs(dot(e1, cross(e2, push.vertices.at[corners.w] - p)));
+    float quarter = six / 24.0;
     Optical o = push.optical.at[push.even == 1u ? 0u : i];
     vec3 fluence = vec3(0), source = vec3(0);
     for (uint k = 0u; k < 4u; ++k) {

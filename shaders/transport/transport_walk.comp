@@ -30,6 +30,10 @@ TransportFieldRef field;
 #include "source/walk_ray.glsl"
 #include "transport/entering_light.glsl"
 
+float next_chance() {
+  return uniform_number(state);
+}
+
 void leave(uint face, vec3 power) {
   unscattered += power;
   if (uvec2(push.leaving) != uvec2(0)) add_power(push.leaving, face, power);

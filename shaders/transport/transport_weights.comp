@@ -9,11 +9,12 @@ struct TransportWeightsPush {
   Vec3s vertices;
   Uvec4s tets;
   Opticals optical;
+  Floats etendue;  // as of BodyRef
   Uints nearest;        // surface vertex of each vertex
   Uints boundary;       // the same, or one of a surface that two bodies share, if that is nearer; null: none do
   Uints tet_offset;     // tets around each vertex
   Uints tet_incidence;
-  Vec2s weights;  // per tet: weight and volume, mm^3
+  Vec2s weights;  // per tet: weight, and volume times etendue, mm^3
   Floats total;   // one
   Reduction reduction;
   uint count;
@@ -59,7 +60,8 @@ void main() {
     uvec4 corners = push.tets.at[i];
     vec3 p = push.vertices.at[corners.x];
     vec3 e1 = push.vertices.at[corners.y] - p, e2 = push.vertices.at[corners.z] - p;
-    float volume = abs(dot(e1, cross(e2, push.vertices.at[corners.w] - p))) / 6.0;
+    float six = number_or_one(push.etendue, i) * abs(dot(e1, cross(e2, push.vertices.at[corners.w] - p)));
+    float volume = six / 6.0;
     float weight = volume * points_in(i, corners);
     push.weights.at[i] = vec2(weight, volume);
     sum += weight;

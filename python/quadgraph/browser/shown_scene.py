@@ -305,9 +305,6 @@ class ShownScene:
         if pointer.startswith("/material"):
             for material in value.values() if isinstance(value, dict) else [value]:
                 named |= set(material_files(material))
-        several = bool(self.document.get("materials"))
-        if (pointer == "/cuts" and value and several) or (pointer.startswith("/materials") and self.scene.cuts):
-            raise InputError(f"{pointer}: cuts are shown by {_CUTTING}, which knows one material for all bodies")
         if pointer == "/solver/method" and self.scene.cuts and value != _CUTTING:
             raise InputError(f"{pointer}: found {shown(value)}, cuts are shown by {_CUTTING} alone; undo them first")
         if not named <= self._files:

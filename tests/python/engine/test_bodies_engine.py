@@ -180,14 +180,40 @@ def test_bodies_without_a_material_and_files_without_bodies_are_named(baked):
         engine.materials = {"left": Material(1.0, 0.1)}
         assert engine.materials == {"left": Material(1.0, 0.1)}
         assert "materials of left" in repr(engine)
-        with pytest.raises(InputError, match="shortest-path: coefficients are given per node"):
-            engine.solve(method="shortest-path")
         engine.material = RED
         assert engine.materials == {}
     with Engine(baked["alone"]) as engine:
         assert engine.bodies == ()
         with pytest.raises(InputError, match="one body without a name"):
             engine.materials = {"left": WHITE}
+
+
+def test_shortest_paths_go_through_the_material_of_each_body(baked):
+    places = [[-3.0, 0, -4.0], [13.5, 0, -4.0]]  # mm, behind the left ball and the right one, as far from the other
+
+    def shown(engine) -> np.ndarray:
+        engine.solve(method="shortest-path")
+        return engine._engine.exitance_at(places)
+
+    with Engine(baked["near"], device="cpu") as engine:
+        engine.lights = ["directional:0,0,-1:1"]
+        engine.material = WHITE
+        white = shown(engine)
+        engine.materials = {"left": WHITE, "right": WHITE}
+        assert shown(engine) == pytest.approx(white, rel=1e-4)
+        engine.materials = {"left": WHITE, "right": RED}
+        left, right = shown(engine)
+        assert left == pytest.approx(white[0], rel=1e-3)
+        engine.material = RED
+        assert right == pytest.approx(shown(engine)[1], rel=1e-3)
+        assert (right[1:] < 0.1 * white[1, 1:]).all()
+        engine.materials = {"left": WHITE, "right": RED}
+        engine.set_cuts([{"type": "plane", "normal": [0, 0, 1], "offset": 2.0}])
+        engine.solve(method="shortest-path")
+        assert engine.render("0,20", width=64, height=48).alpha.any()
+        engine.materials = {"left": WHITE, "right": Material(1.0, 0.1, eta=1.6)}
+        with pytest.raises(InputError, match=r"shortest-path: eta=1.3 found of 'left' and eta=1.6 of 'right'"):
+            engine.solve(method="shortest-path")
 
 
 def test_scenes_name_materials_by_body(baked, tmp_path):

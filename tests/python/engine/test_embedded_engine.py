@@ -10,6 +10,7 @@ from quadgraph.baking.bodies import BodyMesh, bake_bodies
 from quadgraph.baking.pipeline import BakeOptions, bake
 from quadgraph.base.errors import InputError
 from quadgraph.browser.shown_scene import ShownScene
+from quadgraph_validation.truth.fresnel import transmittance_from_outside
 from shapes import icosphere, moved, write_obj
 
 pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
@@ -100,18 +101,89 @@ def test_finite_volumes_agree_with_elements(nest):
     assert off(exitance_of(nest, method="quadgraph-fv"), elements) < 0.05
 
 
-def test_an_index_of_its_own_is_said_and_not_used(nest):
+BENT = Material(5.0, (0.1, 0.5, 0.02), eta=1.7)
+
+
+def test_an_index_of_its_own_counts_and_methods_without_it_say_so(nest):
     usual = exitance_of(nest)
+    nest.materials = {"jelly": JELLY, "stone": BENT, "core": JELLY, "pebble": STONE}
+    assert off(exitance_of(nest), usual) > 2e-3
     assert nest.solution.index_warning == ""
-    nest.materials = {"jelly": JELLY, "stone": Material(5.0, (0.1, 0.5, 0.02), eta=1.7), "core": JELLY, "pebble": STONE}
-    assert np.array_equal(exitance_of(nest), usual)
+    nest.solve(method="quadgraph-fdm", **EXACTLY)
     assert nest.solution.index_warning == (
         "stone has the index of refraction 1.4 of jelly, which it lies within, and not its own of 1.7: what the "
-        "surface between them would mirror and bend is left out"
+        "surface between them mirrors and bends is left out by this method; --method fem and quadgraph-fv know it"
     )
     nest.material = JELLY
     nest.solve(**EXACTLY)
     assert nest.solution.index_warning == ""
+    nest.materials = {"jelly": JELLY, "stone": STONE, "core": JELLY, "pebble": STONE}
+    assert np.array_equal(exitance_of(nest), usual)
+
+
+@pytest.mark.parametrize("method", ["fem", "quadgraph-fv"])
+def test_light_within_a_furnace_is_as_the_square_of_the_index(nest, method):
+    """In even light all radiance over the square of the index is the same, at the surface and within."""
+    nest.materials = {name: Material(2.0, 0.0, eta=1.7 if name == "stone" else 1.4) for name in nest.bodies}
+    nest.lights = ["ambient:1"]
+    nest.solve(method=method, source="diffuse", correction=False, tolerance=1e-7)
+    field = nest.surface()
+    assert field.exitance == pytest.approx(field.q, rel=2e-4)
+    jelly, stone, core = nest.fluence_at([[-6.0, 0, 0], [3.2, 3.2, 0.4], [3.2, 1.0, 0.4]])
+    assert stone / jelly == pytest.approx(np.full(3, (1.7 / 1.4) ** 2), rel=1e-3)
+    assert core / jelly == pytest.approx(np.ones(3), rel=1e-3)
+
+
+@pytest.mark.parametrize("options", [{}, {"method": "quadgraph-fv", "correction": False}, {"correction": False}])
+def test_light_is_conserved_where_it_is_bent_within(nest, options):
+    nest.materials = {"jelly": JELLY, "stone": BENT, "core": Material(0.2, 0.001, eta=1.0), "pebble": STONE}
+    assert np.abs(nest.solve(**options).energy.balance).max() < 5e-3
+
+
+def test_derivatives_name_bodies_that_bend_light_within(nest):
+    nest.materials = {"jelly": JELLY, "stone": BENT, "core": JELLY, "pebble": STONE}
+    nest.solve(**EXACTLY)
+    with pytest.raises(InputError, match="derivatives: found bodies within others with an index of refraction of"):
+        nest.forward_model()
+
+
+def through_balls(away, radii, indices, sigma_a):
+    """Share of the light behind two clear balls about one middle that comes through, of rays so far from the middle;
+    the outer one absorbs. What the inner one mirrors does not count, as its light comes from the side.
+    """
+    passes_out = transmittance_from_outside(np.sqrt(1 - (away / radii[0]) ** 2), indices[0])
+    near = away / indices[0]  # of the ray from the middle, within the outer ball
+    least, ratio = min(indices), max(indices) / min(indices)
+    passes_in = transmittance_from_outside(np.sqrt(1 - (away / (least * radii[1])) ** 2), ratio)
+    way = 2 * (np.sqrt(radii[0] ** 2 - near**2) - np.sqrt(radii[1] ** 2 - near**2))
+    kept = passes_in**2 * np.exp(-sigma_a * way)
+    return passes_out**2 * kept / (1 - (1 - passes_out) * kept)
+
+
+def test_a_clear_stone_is_seen_as_its_index_has_it(tmp_path):
+    """What comes through two clear balls about one middle by rays that both bend: Snell's and Beer's laws."""
+    outer, inner, sigma_a = 5.0, 3.0, 0.05
+    shapes = {"outer": icosphere(4, outer), "inner": icosphere(4, inner)}
+    meshes = [BodyMesh(name, write_obj(shape, tmp_path / f"{name}.obj"), unit="mm") for name, shape in shapes.items()]
+    bake_bodies(meshes, tmp_path / "balls.qgraph", BakeOptions())
+    tinted = f"sigma_s_prime=0,sigma_a={sigma_a},eta=1.4"
+    with Engine(tmp_path / "balls.qgraph", device="cpu") as engine:
+        engine.lights = [f"ambient:{np.pi}"]
+        for index in (1.0, 1.7):
+            engine.materials = {"outer": tinted, "inner": f"sigma_s_prime=0,sigma_a=0,eta={index}"}
+            engine.solve(correction=False)
+            picture = engine._engine.render(
+                view="0,0,600", vertical_fov=1.1, width=128, height=128, transmission_roughness=0
+            )
+            y, x = (np.mgrid[:128, :128] + 0.5 - 64) * 2 * 600 * np.tan(np.radians(0.55)) / 128
+            away = np.hypot(x, y)
+            passes = away < 0.9 * min(index, 1.4) * inner  # where the ray meets the stone and is not all mirrored there
+            wanted = through_balls(away[passes], (outer, inner), (1.4, index), sigma_a)
+            found = picture.transmittance[passes, 0]
+            off_by = np.abs(found / wanted - 1)
+            print(f"{index}: {100 * off_by.mean():.2f}% off, at most {100 * off_by.max():.2f}%")
+            assert off_by.mean() < 0.003
+            assert off_by.max() < 0.01  # flat faces
 
 
 def test_roughness_is_that_of_the_outer_surface(nest):
@@ -157,9 +229,15 @@ def test_deformations_and_derivatives_go_over_all(nest):
     assert (by_body < 0).all()  # what absorbs more lets less out, wherever it is
 
 
-def test_methods_that_know_one_material_refuse(nest):
-    with pytest.raises(InputError, match="shortest-path"):
-        nest.solve(method="shortest-path")
+def test_shortest_paths_go_through_what_lies_within(nest):
+    nest.materials = dict.fromkeys(nest.bodies, JELLY)
+    nest.solve(method="shortest-path")
+    place = [[-7.5, 0.0, 0.0]]  # mm, away from the sun
+    clear = nest._engine.exitance_at(place)
+    nest.materials = {"jelly": JELLY, "stone": Material(50.0, 5.0, eta=1.4), "core": JELLY, "pebble": STONE}
+    nest.solve(method="shortest-path")
+    assert (nest._engine.exitance_at(place) <= clear).all()
+    assert nest.solution.index_warning == ""
 
 
 def test_a_scene_places_the_outermost_alone(files):
