@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <map>
 #include <string>
 
 #include "engine/base/error.h"
@@ -31,13 +32,23 @@ void check_by(const std::optional<glm::vec3>& by, const char* field, Edit::Opera
   }
 }
 
-// Appends the image's texels to `texels`; where they lie.
-gpu::ImageLevels put(const std::shared_ptr<const ImagePyramid>& image, std::vector<glm::vec3>& texels) {
-  if (!image) return {};
-  const auto first = static_cast<gpu::uint>(texels.size());
-  texels.insert(texels.end(), image->texels.begin(), image->texels.end());
-  return {first, image->columns, image->rows, image->levels};
-}
+// Images whose texels lie in one array, each of them once, however many edits stamp it.
+class PutImages {
+ public:
+  explicit PutImages(std::vector<glm::vec3>& texels) : texels_(texels) {}
+
+  // Appends the image's texels where they are not there yet; where they lie.
+  gpu::ImageLevels put(const std::shared_ptr<const ImagePyramid>& image) {
+    if (!image) return {};
+    const auto [known, is_new] = first_.try_emplace(image.get(), static_cast<gpu::uint>(texels_.size()));
+    if (is_new) texels_.insert(texels_.end(), image->texels.begin(), image->texels.end());
+    return {known->second, image->columns, image->rows, image->levels};
+  }
+
+ private:
+  std::vector<glm::vec3>& texels_;
+  std::map<const ImagePyramid*, gpu::uint> first_;
+};
 
 // Appends the points of a stroke to `points`.
 gpu::EditPlace put(std::span<const glm::vec3> stroke, float reach, std::vector<glm::vec3>& points) {
@@ -170,10 +181,11 @@ void check_edit(const Edit& edit) {
 }
 
 EditArrays::EditArrays(std::span<const Edit> all) {
+  PutImages images(texels);
   for (const Edit& edit : all) {
     edits.push_back(as_gpu(edit, points));
-    edits.back().image = put(edit.image, texels);
-    edits.back().mask = put(edit.mask, texels);
+    edits.back().image = images.put(edit.image);
+    edits.back().mask = images.put(edit.mask);
   }
 }
 

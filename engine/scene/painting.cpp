@@ -2,6 +2,7 @@
 
 #include "engine/base/error.h"
 #include "engine/scene/layers.h"
+#include "engine/scene/placement_json.h"
 
 namespace quadgraph {
 namespace {
@@ -12,8 +13,34 @@ float length(const JsonField& field) {
   return static_cast<float>(field.number(least_mm, most_mm));
 }
 
+// What the brush does to coefficients, where that is said in place of a colour.
+void put_coefficients(const JsonField& field, Edit& edit) {
+  field.allow({"operation", "sigma_a", "sigma_s_prime"});
+  Edit said{.operation = field.at("operation").named<EditOperation>()};
+  if (const auto absorption = field.find("sigma_a")) said.sigma_a = absorption->rgb();
+  if (const auto scattering = field.find("sigma_s_prime")) said.sigma_s_prime = scattering->rgb();
+  field.within([&] { check_edit(said); });
+  edit.operation = said.operation;
+  edit.sigma_a = said.sigma_a;
+  edit.sigma_s_prime = said.sigma_s_prime;
+}
+
+// What not every brush has.
+void put_more(const JsonField& field, Brush& brush) {
+  if (const auto from = field.find("depth_from")) {
+    brush.edit.depth_from = static_cast<float>(from->number(0, most_mm));
+    if (brush.edit.depth_from >= brush.edit.depth_to) from->refuse("less than depth");
+  }
+  if (const auto mask = field.find("mask")) brush.edit.mask = image_from(*mask);
+  if (const auto pattern = field.find("pattern")) brush.edit.image = image_from(*pattern);
+  const auto coefficients = field.find("coefficients");
+  brush.by_colour = !coefficients.has_value();
+  if (coefficients) put_coefficients(*coefficients, brush.edit);
+}
+
 Brush brush_from(const JsonField& field) {
-  field.allow({"tool", "colour", "distance", "strength", "radius", "depth", "falloff", "mirror", "layer"});
+  field.allow({"tool", "colour", "distance", "strength", "radius", "depth", "falloff", "mirror", "layer", "depth_from",
+               "mask", "pattern", "coefficients"});
   Brush brush;
   brush.tool = field.at("tool").named<BrushTool>();
   const JsonField colour = field.at("colour");
@@ -28,6 +55,7 @@ Brush brush_from(const JsonField& field) {
   brush.edit.depth_to = length(field.at("depth"));
   brush.edit.softness = static_cast<float>(field.at("falloff").number(0, most_mm));
   brush.mirror = field.at("mirror").named<Mirror>();
+  put_more(field, brush);
   return brush;
 }
 

@@ -24,7 +24,9 @@ struct Painted {
 };
 
 // {"tool": "paint", "colour": [.5, .04, .03], "distance": 1, "strength": 1, "radius": 4, "depth": 4, "falloff": 2,
-// "mirror": "off", "layer": 0}: tool and layer as of Brush::touch, colour linear, lengths in mm.
+// "mirror": "off", "layer": 0}: tool and layer as of Brush::touch, colour linear, lengths in mm. A brush that is read
+// may have more: "depth_from"; "mask" and "pattern", files of images that it stamps; and "coefficients", which take the
+// place of colour, distance and strength: {"operation": "multiply", "sigma_a": .5, "sigma_s_prime": [1, 1, 2]}.
 Json to_json(const Brush& brush);
 
 // The scene that the stage shows after such a brush has gone over `places` of its picture, pixels right and down from

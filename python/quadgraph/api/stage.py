@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -115,17 +116,20 @@ class Stage:
         corner, at most 64 at once, as in the window; `begins`: a stroke begins, else the last one goes on there.
 
         brush: `usual_brush` with other values, "tool" paint, erase or pick, "mirror" one of `mirrors`, and the number
-        of a "layer", from 0; the first stroke of a scene without layers makes one. Returned beside the scene:
+        of a "layer", from 0; the first stroke of a scene without layers makes one. It may have "depth_from", mm; "mask"
+        and "pattern", images' files that it stamps, where it is led to, as wide as the radius to either side; and in
+        place of colour, distance and strength "coefficients": {"operation": "multiply", "sigma_a": .5,
+        "sigma_s_prime": 2}, as an edit of a scene (docs/scene.md) has these. Returned beside the scene:
         "touched", whether the first place lies on a body, the "layer", and "colour" and "distance" of the brush, which
         `pick` takes up. Show the scene to see it. Raises InputError, also for a layer that is hidden.
         """
-        return self._edited(core.after_brush(self._open, json.dumps(dict(brush)), list(places), begins))
+        return self._edited(core.after_brush(self._open, _brush_text(brush), list(places), begins))
 
     def brush_rings(self, brush: Mapping[str, Any], place: tuple[float, float]) -> list[Doubles]:
         """Return rings, (48, 2) pixels, that show how far a brush reaches at a place of the picture of the scene that
         is shown: on the body, and where the mirror image is seen. None beside the body. Raises InputError.
         """
-        return [np.array(ring) for ring in core.brush_rings(self._open, json.dumps(dict(brush)), *map(float, place))]
+        return [np.array(ring) for ring in core.brush_rings(self._open, _brush_text(brush), *map(float, place))]
 
     def relayered(self, change: Mapping[str, Any]) -> tuple[Scene, dict[str, Any]]:
         """Return the scene that is shown after a change of its layers: {"layer": 0, "change": "add"}, and alike remove,
@@ -170,3 +174,7 @@ class Stage:
         if layers.convergence:
             self.engine._take(layers.convergence["solve"])
         return Picture(layers, shown.metadata, dict(self._scene.picture) if self._scene else {})
+
+
+def _brush_text(brush: Mapping[str, Any]) -> str:
+    return json.dumps(dict(brush), default=os.fspath)

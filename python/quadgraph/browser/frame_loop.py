@@ -246,7 +246,8 @@ class FrameLoop:
         document = scene.to_dict()
         shown = {name: value for name, value in document.items() if name != "edits"}  # of thousands of points, maybe
         can = {"undo": self._shown.can_undo, "redo": self._shown.can_redo}
-        state = {"scene": shown, "layers": self._shown.layers, "roughness": self._shown.roughness, **can}
+        painted = {"layers": self._shown.layers, "sent": self._shown.sent_stamps}
+        state = {"scene": shown, **painted, "roughness": self._shown.roughness, **can}
         self._show(ShownFrame(self._serial, jpeg, {**told, **said, **state}, document, srgb))
 
 

@@ -1,7 +1,8 @@
 """The server between pages and frames: one page, one WebSocket for each that shows it, on a thread of its own.
 
-A page sends JSON, as `FrameLoop` does it; it is sent, for every frame, a JSON text and then the JPEG, the
-newest one whenever it has shown the one before. Whoever has the token may look and change; nothing else is asked.
+A page sends JSON, as `FrameLoop` does it, and images for its brush; it is sent, for every frame, a JSON text and then
+the JPEG, the newest one whenever it has shown the one before. Whoever has the token may look and change; nothing else
+is asked.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from quadgraph.base.errors import InputError
 from quadgraph.base.optional_package import optional_package
 from quadgraph.browser.frame_loop import ShownFrame
 from quadgraph.browser.inbox import Inbox, Message
+from quadgraph.browser.stamps import MOST_SENT_BYTES, Stamps, scene_text
 
 if TYPE_CHECKING:
     from aiohttp import web
@@ -30,7 +32,8 @@ if TYPE_CHECKING:
 MOST_PAGES = 8
 MOST_BYTES = 1 << 16  # of a message
 _SHOWN_S = 5.0  # after which a page that has not said that it shows a frame gets the next
-_FILES = {"page.js": "text/javascript", "brush.js": "text/javascript", "page.css": "text/css"}
+_SCRIPTS = ("page.js", "brush.js", "stamps.js")
+_FILES = {**dict.fromkeys(_SCRIPTS, "text/javascript"), "page.css": "text/css"}
 # The token stands in the address: it must not leave with a link, or stay in a cache.
 _HEADERS = {
     "Cache-Control": "no-store",
@@ -73,13 +76,14 @@ class Page:
 class Server:
     """Serves the page and its frames while it is open. Use it in a `with` block."""
 
-    def __init__(self, host: str, port: int, token: str, hello: dict[str, Any]) -> None:
-        """Take a place to listen at, 0 for any free port; hello: what a page is told at first.
+    def __init__(self, host: str, port: int, token: str, hello: dict[str, Any], stamps: Stamps) -> None:
+        """Take a place to listen at, 0 for any free port; hello: what a page is told at first; stamps: what takes the
+        images that pages send.
 
         Raises InputError where the package is not there.
         """
         optional_package("aiohttp", "serve")
-        self._host, self._port, self._hello = host, port, hello
+        self._host, self._port, self._hello, self._stamps = host, port, hello, stamps
         self._token = token or secrets.token_urlsafe(24)
         self._inbox: Inbox | None = None
         self._pages: set[Page] = set()
@@ -143,7 +147,9 @@ class Server:
         application.router.add_get("/", self._index)
         application.router.add_get("/live", self._live)
         application.router.add_get("/scene.json", self._scene)
+        application.router.add_get("/scene.zip", self._bundle)
         application.router.add_get("/picture.png", self._picture)
+        application.router.add_post("/stamp", self._stamp)
         for name in _FILES:
             application.router.add_get(f"/{name}", self._file)
         runner = web.AppRunner(application, access_log=None, shutdown_timeout=1.0)
@@ -191,9 +197,41 @@ class Server:
         if not self._knows(request):
             return self._refused()
         scene = dict(self.frame.scene) if self.frame else {}
-        text = json.dumps({"quadgraph_scene": 1, **scene}, indent=2)
+        if sent := self._stamps.sent_in(scene.get("edits", [])):
+            said = f"The scene stamps images that pages have sent ({', '.join(sent)}): scene.zip has it with these."
+            return web.Response(status=409, text=said, headers=_HEADERS)
         headers = {**_HEADERS, "Content-Disposition": 'attachment; filename="scene.json"'}
-        return web.Response(text=text, content_type="application/json", headers=headers)
+        return web.Response(text=scene_text(scene), content_type="application/json", headers=headers)
+
+    async def _bundle(self, request: web.Request) -> web.Response:
+        from aiohttp import web
+
+        if not self._knows(request):
+            return self._refused()
+        packed = await asyncio.to_thread(self._stamps.bundle, dict(self.frame.scene) if self.frame else {})
+        headers = {**_HEADERS, "Content-Disposition": 'attachment; filename="scene.zip"'}
+        return web.Response(body=packed, content_type="application/zip", headers=headers)
+
+    async def _stamp(self, request: web.Request) -> web.Response:
+        """Keep an image for brushes; tells the name that it has, or why it is refused."""
+        from aiohttp import web
+
+        if not self._knows(request):
+            return self._refused()
+        content = bytearray()
+        if (request.content_length or 0) <= MOST_SENT_BYTES:
+            async for part in request.content.iter_chunked(1 << 16):
+                content += part
+                if len(content) > MOST_SENT_BYTES:
+                    break
+        if not content or len(content) > MOST_SENT_BYTES:
+            said = f"image: allowed are 1 to {MOST_SENT_BYTES} bytes"
+            return web.json_response({"refused": said}, status=413, headers=_HEADERS)
+        try:
+            called = await asyncio.to_thread(self._stamps.take, request.query.get("name", ""), bytes(content))
+        except InputError as error:
+            return web.json_response({"refused": str(error)}, status=400, headers=_HEADERS)
+        return web.json_response({"image": called}, headers=_HEADERS)
 
     async def _picture(self, request: web.Request) -> web.Response:
         from aiohttp import web
@@ -218,7 +256,7 @@ class Server:
         await socket.prepare(request)
         page = Page(socket)
         self._pages.add(page)
-        await socket.send_json({"hello": self._hello})
+        await socket.send_json({"hello": self._hello | {"images": self._stamps.names}})
         page.news.set()
         sender = asyncio.create_task(page.send_frames(self))
         try:

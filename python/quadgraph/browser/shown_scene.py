@@ -15,6 +15,7 @@ from quadgraph.api.stage import Stage
 from quadgraph.base.array_types import Doubles
 from quadgraph.base.errors import InputError
 from quadgraph.browser.page_values import NAMES_FILE, files, layers_of, material_files, points_in, shares, shown
+from quadgraph.browser.stamps import Stamps, stamped
 
 # What of a scene a page may set, and all below.
 ALLOWED = (
@@ -42,6 +43,8 @@ LEAST_SIDE, MOST_SIDE = 64, 2048  # pixels
 MOST_MEMBERS = 256  # lights, steps of a deformation, cuts
 MOST_STROKE_POINTS = 50_000  # of all strokes together
 MOST_UNDONE = 100
+MOST_STAMPED = 16  # images in strokes
+STAMPS = frozenset({"mask", "pattern"})  # of a brush: names of images
 _DIGITS = 5  # of shares of the picture: a fiftieth of a pixel
 _CUTTING = "shortest-path"  # the method that alone shows cuts
 GESTURES = {"orbit": "camera", "pan": "camera", "zoom": "camera", "turn": "lights"}
@@ -51,9 +54,18 @@ _SIDES = ("/picture/width", "/picture/height")
 class ShownScene:
     """A scene with all members filled in, and the steps back from it."""
 
-    def __init__(self, scene: Scene, bodies: Sequence[str] = (), hosts: Mapping[str, str] | None = None) -> None:
-        """Hold a scene; bodies, hosts: those that its file names (`Engine`). Raises InputError for shapes in memory."""
-        self._bodies, self._hosts = tuple(bodies), hosts or {}
+    def __init__(
+        self,
+        scene: Scene,
+        bodies: Sequence[str] = (),
+        hosts: Mapping[str, str] | None = None,
+        stamps: Stamps | None = None,
+    ) -> None:
+        """Hold a scene; bodies, hosts: those that its file names (`Engine`); stamps: images that a brush may stamp.
+
+        Raises InputError for shapes in memory.
+        """
+        self._bodies, self._hosts, self._stamps = tuple(bodies), hosts or {}, stamps
         self._start = scene.to_dict()
         materials = [self._start.get("material"), *self._start.get("materials", {}).values()]
         self._files = {*files(self._start), *(name for each in materials for name in material_files(each))}
@@ -94,6 +106,11 @@ class ShownScene:
     def can_redo(self) -> bool:
         """Whether a step was taken back, and nothing done since."""
         return bool(self._redone)
+
+    @property
+    def sent_stamps(self) -> list[str]:
+        """Names of the images in the scene that pages have sent: a scene file needs them beside it."""
+        return self._stamps.sent_in(self.document["edits"]) if self._stamps else []
 
     @property
     def layers(self) -> list[dict[str, Any]]:
@@ -166,7 +183,7 @@ class ShownScene:
         pixels = [(x * width, y * height) for x, y in shares("at", places)]
         if begins:
             self.end_step()
-        scene, state = stage.painted(brush, pixels, begins=begins)
+        scene, state = stage.painted(self._with_stamps(brush), pixels, begins=begins)
         self._take_edits(scene, "/edits, a stroke")
         return state | {"layers": self.layers}
 
@@ -178,8 +195,21 @@ class ShownScene:
             raise InputError(f"ring: found {shown(brush)}, a brush is wanted; docs/window.md, In a browser")
         size = np.array([self.scene.picture[side] for side in ("width", "height")])
         ((x, y),) = shares("at", [place])
-        found = stage.brush_rings(brush, (x * size[0], y * size[1]))
+        bare = {name: value for name, value in brush.items() if name not in STAMPS | {"coefficients"}}
+        found = stage.brush_rings(bare, (x * size[0], y * size[1]))
         return [np.round(ring / size, _DIGITS).tolist() for ring in found]
+
+    def _with_stamps(self, brush: Mapping[str, Any]) -> dict[str, Any]:
+        """The brush with the files of the images that it names. Raises InputError for names that are none of these."""
+        made = dict(brush)
+        for member in STAMPS & made.keys():
+            if self._stamps is None:
+                raise InputError(f"{member}: found {shown(made[member])}, there are no images")
+            try:
+                made[member] = self._stamps.path(made[member])
+            except InputError as error:
+                raise InputError(f"{member}: {error}") from None
+        return made
 
     def relayer(self, stage: Stage, change: Any) -> dict[str, Any]:
         """Change the layers of the scene that the stage shows, as `Stage.relayered`. Raises InputError."""
@@ -202,6 +232,9 @@ class ShownScene:
         if points > MOST_STROKE_POINTS:
             said = f"found strokes of {points} points, allowed are {MOST_STROKE_POINTS}; remove a layer"
             raise InputError(f"edits: {said}")
+        new = stamped(edits) - self._files
+        if len(new) > MOST_STAMPED:
+            raise InputError(f"edits: found {len(new)} images, allowed are {MOST_STAMPED}; remove a layer")
         self._change(place, {"/edits": edits})
 
     def move(self, stage: Stage, gesture: Any, right: Any, up: Any, light: Any) -> None:

@@ -59,14 +59,15 @@ def run(args: argparse.Namespace) -> int:
     from quadgraph.browser.frame_loop import FrameLoop
     from quadgraph.browser.server import Server
     from quadgraph.browser.shown_scene import ShownScene
+    from quadgraph.browser.stamps import Stamps
 
     core = load_core()
     token = os.environ.get(_TOKEN, "")
     if token and len(token) < _LEAST_TOKEN:
         raise InputError(f"{_TOKEN}: found {len(token)} letters, allowed are at least {_LEAST_TOKEN}")
-    with _scene(args) as scene, Stage(device=args.device) as stage:
+    with _scene(args) as scene, Stage(device=args.device) as stage, Stamps(args.file.parent) as stamps:
         stage.show(scene)
-        shown = ShownScene(scene, stage.engine.bodies, stage.engine.hosts)
+        shown = ShownScene(scene, stage.engine.bodies, stage.engine.hosts, stamps)
         low, high = stage.engine.box
         hello = {
             "file": args.file.name,
@@ -80,7 +81,7 @@ def run(args: argparse.Namespace) -> int:
             "mirrors": stage.mirrors,
             "box": [low.tolist(), high.tolist()],
         }
-        server = Server(args.host, args.port, token, hello)
+        server = Server(args.host, args.port, token, hello, stamps)
         frames = FrameLoop(stage, shown, server.show)
         try:
             server.open(frames.inbox)

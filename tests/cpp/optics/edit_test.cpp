@@ -122,6 +122,17 @@ TEST_CASE("the luminance of a mask is how much of an edit arrives, beside its de
   CHECK(share({9, 5, 1}, 0) == doctest::Approx(0));
 }
 
+TEST_CASE("an image that several edits stamp is put once") {
+  Edit edit{.operation = Edit::Operation::set, .sigma_a = glm::vec3(8), .placement = flat, .image = steps()};
+  Edit masked = edit;
+  masked.mask = steps();
+  const std::vector<Edit> all{edit, edit, masked, edit};
+  const EditArrays arrays(all);
+  CHECK(arrays.texels.size() == edit.image->texels.size() + masked.mask->texels.size());
+  CHECK(arrays.edits[3].image.first == 0);
+  CHECK(arrays.edits[2].mask.first == edit.image->texels.size());
+}
+
 TEST_CASE("what is finer in an image than the nodes are apart is taken together") {
   Image stripes{256, 256, {}};
   for (std::uint32_t i = 0; i < 256 * 256; ++i) stripes.texels.emplace_back(static_cast<float>(i % 2));

@@ -87,6 +87,19 @@ class PageHand:
             hand.move_by_offset(*move)
         hand.release().perform()
 
+    def slide(self, **values):
+        """Move sliders to values, by the names that they have."""
+        for name, value in values.items():
+            moved = f"$('{name}').value = {value}; $('{name}').dispatchEvent(new Event('input'))"
+            self.browser.execute_script(moved)
+
+    def numbers(self, coefficient, *values):
+        """Type the numbers by which the brush changes a coefficient."""
+        line = self.find(coefficient).find_element("xpath", "../..")
+        for field, value in zip(line.find_elements("css selector", "[type=number]"), values, strict=True):
+            field.clear()
+            field.send_keys(str(value))
+
     def errors(self):
         return [entry for entry in self.browser.get_log("browser") if "WebSocket" not in entry["message"]]
 
@@ -134,8 +147,7 @@ def test_a_mirrored_stroke_is_seen_on_both_sides(browser, ball):
         mirror = Select(hand.find("mirror"))
         assert [option.text for option in mirror.options][:2] == ["off", "left-right (X)"]
         mirror.select_by_value("x")
-        for name in ("radius", "depth"):  # powers of two of those at first
-            browser.execute_script(f"$('{name}').value = 1; $('{name}').dispatchEvent(new Event('input'))")
+        hand.slide(radius=1, depth=1)  # powers of two of those at first
         painted = hand.after(lambda: hand.drag((100, -20), (0, 20), (0, 20)))
         wait_for(lambda: len(hand.rings()) == 2)
         here, there = hand.rings()

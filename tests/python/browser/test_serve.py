@@ -119,7 +119,7 @@ def test_a_scene_is_shown_changed_and_saved(ball):
 
 def test_who_does_not_have_the_token_sees_nothing(ball):
     with served(ball) as (_, address):
-        for path in ("/", "/live", "/scene.json", "/picture.png"):
+        for path in ("/", "/live", "/scene.json", "/scene.zip", "/picture.png"):
             place = address.partition("/?")[0] + path
             assert refused(place) == 403
             assert refused(f"{place}?token=another") == 403
@@ -187,6 +187,9 @@ HOSTILE = [
     '{"paint": {"tool": "paint"}, "at": [[0.5, 0.5]], "begins": "yes"}',
     '{"paint": {"tool": "paint", "mirror": "x" }, "at": [[0.5, 0.5]], "begins": true}',
     '{"paint": {"tool": [[[]]]}, "at": [[0.5, 0.5]]}',
+    '{"paint": {"tool": "paint", "mask": "/etc/passwd"}, "at": [[0.5, 0.5]], "begins": true}',
+    '{"paint": {"tool": "paint", "pattern": {"a": 1}}, "at": [[0.5, 0.5]], "begins": true}',
+    '{"paint": {"tool": "paint", "coefficients": [[[]]]}, "at": [[0.5, 0.5]], "begins": true}',
     '{"ring": 7, "at": [0.5, 0.5]}',
     '{"ring": {"tool": "paint"}, "at": [0.5, 0.5]}',
     '{"ring": {"tool": "paint"}, "at": [[0.5, 0.5]]}',

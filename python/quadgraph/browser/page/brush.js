@@ -4,7 +4,8 @@
 const CLICK_PIXELS = 5;  // that a click may move
 const MOST_PLACES = 64;  // of a stroke in one message
 const PATIENCE_MS = 500;  // with an answer about rings
-const RADIUS_STEPS = { least: -3, most: 3 };  // powers of two of the radius at first
+const RADIUS_STEPS = { least: -3, most: 3 };  // powers of two of what it is at first
+const POWERS = ["radius", "depth", "distance"];
 
 const EYE = '<svg viewBox="0 0 20 20"><path d="M2 10q8 9 16 0"/><g class="open"><path d="M2 10q8-9 16 0"/><circle cx="10" cy="10" r="2.4"/></g></svg>';
 
@@ -36,6 +37,7 @@ function greetBrush(told) {
   $("body-part").hidden = told.bodies.length < 2;
   fill($("body"), ["", ...told.bodies], (name) => name || "All");
   brush = { ...told.brush, tool: "paint" };
+  greetStamps(told);
   $("brush-colour").value = hex(brush.colour);
   if (!$("placement").children.length) buildPlacement();
   fill($("mirror"), Object.keys(told.mirrors), (name) => told.mirrors[name]);
@@ -92,10 +94,13 @@ function showPlacement(scene) {
 
 function showBrush() {
   const millimetres = (value) => `${value.toPrecision(2)} mm`;
-  $("radius").value = Math.log2(brush.radius / hello.brush.radius);
-  $("radius").parentElement.querySelector("output").textContent = millimetres(brush.radius);
-  $("depth").value = Math.log2(brush.depth / hello.brush.depth);
-  $("depth").parentElement.querySelector("output").textContent = millimetres(brush.depth);
+  for (const id of POWERS) {
+    $(id).value = Math.log2(brush[id] / hello.brush[id]);
+    $(id).parentElement.querySelector("output").textContent = millimetres(brush[id]);
+  }
+  $("falloff").value = brush.falloff / brush.radius;
+  $("falloff").parentElement.querySelector("output").textContent = millimetres(brush.falloff);
+  showFrom();
   $("strength").value = brush.strength;
   $("strength").parentElement.querySelector("output").textContent = `${Math.round(100 * brush.strength)}%`;
   $("mirror").value = brush.mirror;
@@ -284,6 +289,7 @@ function setCut() {
 
 function controlsOfBrush(frame) {
   layers(frame.layers);
+  showSaving(frame.sent);
   showCut(frame.scene);
   showPlacement(frame.scene);
   put("method", frame.scene.solver.method);
@@ -301,13 +307,17 @@ function listenBrush() {
   }
   $("brush-colour").addEventListener("input", (event) => { brush.colour = linear(event.target.value); });
   const slide = (id, took) => $(id).addEventListener("input", () => { took(Number($(id).value)); showBrush(); });
-  slide("radius", (power) => {
-    brush.radius = hello.brush.radius * 2 ** power;
-    brush.falloff = brush.radius / 2;
-  });
-  slide("depth", (power) => { brush.depth = hello.brush.depth * 2 ** power; });
+  for (const id of POWERS) {
+    Object.assign($(id), { min: RADIUS_STEPS.least, max: RADIUS_STEPS.most, step: 0.1 });
+    slide(id, (power) => {
+      const share = brush.falloff / brush.radius;
+      brush[id] = hello.brush[id] * 2 ** power;
+      brush.falloff = share * brush.radius;
+    });
+  }
+  slide("falloff", (share) => { brush.falloff = share * brush.radius; });
   slide("strength", (share) => { brush.strength = share; });
-  for (const id of ["radius", "depth"]) Object.assign($(id), { min: RADIUS_STEPS.least, max: RADIUS_STEPS.most, step: 0.1 });
+  listenStamps();
   $("mirror").addEventListener("change", () => { brush.mirror = $("mirror").value; });
   slider("opacity", (share) => change("opacity", share));
   $("add-layer").addEventListener("click", () => change("add"));

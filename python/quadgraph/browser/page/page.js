@@ -301,7 +301,7 @@ function listen() {
     link.href = `picture.png?token=${encodeURIComponent(token)}`;
     link.click();
   });
-  $("save-scene").href = `scene.json?token=${encodeURIComponent(token)}`;
+  showSaving([]);
   let resized = 0;
   addEventListener("resize", () => {
     clearTimeout(resized);
