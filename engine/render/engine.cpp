@@ -136,10 +136,21 @@ void Engine::set_lights(std::vector<Light> lights) {
   implementation_->shadows_stale = implementation_->irradiance_stale = true;
 }
 
+void Engine::set_normal_map(const std::optional<NormalMap>& map) {
+  const auto turn = implementation_->in_use.take();
+  auto& self = *implementation_;
+  check_options({.normal_map = map});
+  if (map == self.facets_said) return;
+  self.facets_said = map;
+  self.facets_stale = true;
+  self.irradiance_stale = self.irradiance_stale || !self.lights.empty();
+}
+
 PresentScene Engine::present_scene() const {
   const auto& self = *implementation_;
   const bool at_rest = self.simulation ? self.simulation->at_rest() : !self.moved;
-  return {.file = self.source, .material = self.material, .lights = self.lights, .as_baked = at_rest && !self.edited};
+  const bool as_baked = at_rest && !self.edited && !self.facets_said;
+  return {.file = self.source, .material = self.material, .lights = self.lights, .as_baked = as_baked};
 }
 
 void Engine::set_irradiance(std::uint32_t level, std::span<const glm::vec3> q,
@@ -147,6 +158,7 @@ void Engine::set_irradiance(std::uint32_t level, std::span<const glm::vec3> q,
   const auto turn = implementation_->in_use.take();
   auto& self = *implementation_;
   self.levels().set_irradiance(level, q, direction);
+  self.lean_nothing();
   if (!self.lights.empty()) self.shadows.update(self.mesh, {{}, self.bounds});
   self.lights.clear();
   self.in_body.reset();

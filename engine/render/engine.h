@@ -95,7 +95,7 @@ struct PresentScene {
   std::string file;      // name of the body's file
   std::string material;  // the text that was set, or in words what was set instead
   std::vector<Light> lights{};
-  bool as_baked = true;  // the body is at rest and has no edits
+  bool as_baked = true;  // the body is at rest, has no edits, and light enters as by its file
 };
 
 // Serves one thread at a time: another one that asks meanwhile, and a process forked later, get InputError.
@@ -145,6 +145,10 @@ class Engine {
   // Reads the images of lights that have them, unless that has been done. Throws InputError as check_light and
   // read_image do.
   void set_lights(std::vector<Light> lights);
+
+  // By which facets light of lamps enters: those of this map; none: of the file's own normal texture, where it has one.
+  // A strength of 0 is none of either. Throws InputError as check_options.
+  void set_normal_map(const std::optional<NormalMap>& map);
 
   PresentScene present_scene() const;
 

@@ -68,11 +68,13 @@ struct Engine::Implementation {
   std::optional<BodyRoughness> body_roughness;  // of the materials of several bodies
   std::string index_warning;                    // the same, of the report
   std::vector<Light> lights;
-  std::vector<float> eta{1};      // of the material, or of those of all bodies
-  bool shadows_stale = false;     // they are not those of the present lights and shape
-  bool irradiance_stale = false;  // nor is q on the levels
-  bool irradiance_rough = false;  // q is that of a frame in motion
-  bool irradiance_given = false;  // q is not that of lights
+  std::vector<float> eta{1};             // of the material, or of those of all bodies
+  bool shadows_stale = false;            // they are not those of the present lights and shape
+  bool irradiance_stale = false;         // nor is q on the levels
+  bool irradiance_rough = false;         // q is that of a frame in motion
+  bool irradiance_given = false;         // q is not that of lights
+  std::optional<NormalMap> facets_said;  // by which light is to enter
+  bool facets_stale = true;              // faces do not lean by it yet
   SolveOptions options;
   std::optional<SolveOptions> again;  // what was asked for, where the last solve is one of those of a mean
   std::optional<SolveReport> report;
@@ -191,7 +193,12 @@ struct Engine::Implementation {
     interruptible([&] { run_irradiance(rough); });
   }
 
+  // engine_facets.cpp
+  void lean_facets();   // as said, or as the file does
+  void lean_nothing();  // until lights are there again
+
   void run_irradiance(bool rough) {
+    lean_facets();
     const LightSet set = cast_shadows();
     simulation->set_beams(set.beams);
     if (set.environments > 0) {

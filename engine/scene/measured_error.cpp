@@ -133,7 +133,7 @@ std::string in_full(const std::string& material) {
 std::string other_than_measured(const Record& record, const SolveOptions& options, const PresentScene& scene) {
   if (in_full(scene.material) != in_full(record.material)) return record.material + ", not " + scene.material;
   if (record.lights && !same_lights(*record.lights, scene.lights)) return "under other light";
-  if (!scene.as_baked) return "the body at rest and without edits";
+  if (!scene.as_baked) return "the body at rest and without edits or a normal map";
   if (record.inter_reflection && !options.inter_reflection) return "inter-reflection, too";
   const bool measured = options.method == Method::fem && options.source == Source::buried &&
                         options.solver == SolverKind::fmg_pcg && options.cycles == 0;

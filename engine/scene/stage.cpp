@@ -39,6 +39,7 @@ void Stage::show(const Scene& scene) {
     engine_->set_cuts(scene.cuts);
     scene_.cuts = scene.cuts;
   }
+  engine_->set_normal_map(scene.render.normal_map);
   scene_ = scene;
 }
 

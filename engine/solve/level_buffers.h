@@ -28,6 +28,7 @@ struct LevelBuffers {
   bool inverted = false;   // some of them are turned inside out
   device::Buffer q;        // vec3 per face, W/mm^2: written by the lights or by set_irradiance
   device::Buffer beam_q;   // float, per beam (BeamBuffers) gpu::Beam::floats per face: what q is made of
+  device::Buffer leaning;  // vec2 per face, where a normal map leans facets (shaders/source/leaning.glsl)
   device::Buffer sky;      // float per face: share of uniform illumination that no other part of the body hides
 
   // Where the last beam begins in beam_q, that of light that enters again, bytes.

@@ -30,12 +30,15 @@ Transposed transposed(const Transfer& transfer, std::uint32_t columns) {
   return back;
 }
 
-std::vector<std::uint32_t> face_words(const Level& level, const Refractions& refractions) {
+// With the address of how facets lean, or 0.
+std::vector<std::uint32_t> face_words(const Level& level, const Refractions& refractions, std::uint64_t leaning) {
   std::vector<std::uint32_t> words = refractions.head(level.face_count());
   for (std::uint32_t f = 0; f < level.face_count(); ++f) {
     const std::uint32_t kind = level.reflecting(f) ? gpu::FACE_REFLECTING : gpu::FACE_OPEN;
     words.push_back(kind | level.body_of_face(f) << gpu::FACE_BODY);
   }
+  words.push_back(static_cast<std::uint32_t>(leaning));
+  words.push_back(static_cast<std::uint32_t>(leaning >> 32));
   return words;
 }
 
@@ -54,7 +57,7 @@ LevelBuffers upload_level(device::Device& device, const Level& level, std::uint3
   buffers.tets = device::upload(device, level.tets, prefix + "tets");
   buffers.faces = device::upload(device, level.faces, prefix + "faces");
   buffers.face_tets = device::upload(device, level.face_tets, prefix + "face_tets");
-  buffers.face_kind = device::upload<std::uint32_t>(device, face_words(level, refractions), prefix + "face_kind");
+  buffers.face_kind = device::upload<std::uint32_t>(device, face_words(level, refractions, 0), prefix + "face_kind");
   const FaceIncidence incidence = face_incidence(level);
   buffers.face_offset = device::upload<std::uint32_t>(device, incidence.offset, prefix + "face_offset");
   buffers.face_incidence = device::upload<std::uint32_t>(device, incidence.face, prefix + "face_incidence");
@@ -75,6 +78,17 @@ std::vector<LevelBuffers> upload_levels(device::Device& device, const std::vecto
     buffers[i].sky = device::upload<float>(device, sky[i], "geometry/sky");
   }
   return buffers;
+}
+
+void lean_faces(device::Device& device, const Level& level, std::uint32_t number, const Refractions& refractions,
+                std::span<const glm::vec2> leaning, LevelBuffers& buffers) {
+  if (leaning.empty()) {
+    buffers.leaning = {};
+  } else {
+    device::rewrite(device, leaning, "light/level " + std::to_string(number) + " leaning", buffers.leaning);
+  }
+  const std::vector<std::uint32_t> words = face_words(level, refractions, buffers.leaning.address());
+  device::write_bytes(device, buffers.face_kind, std::as_bytes(std::span(words)));
 }
 
 void upload_graph(device::Device& device, const Level& level, std::uint32_t number, LevelBuffers& buffers) {

@@ -1,6 +1,8 @@
 // A level of the file on the device.
 #pragma once
 
+#include <glm/vec2.hpp>
+#include <span>
 #include <vector>
 
 #include "engine/base/solve_options.h"
@@ -18,6 +20,10 @@ LevelBuffers upload_level(device::Device& device, const Level& level, std::uint3
 // All levels of a file, with the shares of the sky that their faces see.
 std::vector<LevelBuffers> upload_levels(device::Device& device, const std::vector<Level>& levels,
                                         const Refractions& refractions);
+
+// Leans facets of the faces, by the numbers of shaders/source/leaning.glsl; none: the faces are as they are.
+void lean_faces(device::Device& device, const Level& level, std::uint32_t number, const Refractions& refractions,
+                std::span<const glm::vec2> leaning, LevelBuffers& buffers);
 
 // Links and nodes, unless they are there.
 void upload_graph(device::Device& device, const Level& level, std::uint32_t number, LevelBuffers& buffers);

@@ -98,6 +98,12 @@ void Simulation::irradiance_changed() {
   implementation_->unload();
 }
 
+void Simulation::set_leaning(std::uint32_t level, std::span<const glm::vec2> leaning) {
+  Implementation& self = *implementation_;
+  lean_faces(self.device, self.shape.levels().at(level), level, self.refractions, leaning, self.levels.at(level));
+  irradiance_changed();
+}
+
 void Simulation::set_vertices(std::uint32_t level, std::span<const glm::vec3> positions) {
   implementation_->move(level, positions);
 }

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
@@ -100,6 +101,10 @@ class Simulation {
 
   // To be called by whoever wrote q and beam_q of all levels on the device.
   void irradiance_changed();
+
+  // Leans facets of the outside faces of a level, two numbers for each as shaders/source/leaning.glsl reads them: light
+  // that enters from then on goes by these; none: by the faces.
+  void set_leaning(std::uint32_t level, std::span<const glm::vec2> leaning);
 
   // Transmitted irradiance q >= 0, one per surface node of `level`, as the only beam: along `direction`, the way light
   // travels outside, or, without it, Lambertian. The direction given last holds for all levels. Throws InputError on a

@@ -86,6 +86,11 @@ void bind_values(py::module_& module) {
       [](Engine& engine, const std::string& json) { engine.set_edits(applied_edits(members(json).layers)); },
       py::arg("engine"), py::arg("json"), "The member `edits` of a scene. Raises InputError.");
   module.def(
+      "set_normal_map",
+      [](Engine& engine, const std::string& json) { engine.set_normal_map(members(json).render.normal_map); },
+      py::arg("engine"), py::arg("json"),
+      "The `normal_map` of the member `picture` of a scene, or none. Raises InputError.");
+  module.def(
       "check_scene", [](const std::string& json) { members(json); }, py::arg("json"),
       "Raises InputError naming the place, unless scene files may have these members.");
   module.def("scene_file", &SceneFile::parse, py::arg("json"), py::arg("path") = std::filesystem::path(),

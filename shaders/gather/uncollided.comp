@@ -4,6 +4,7 @@
 #include "material/fresnel.glsl"
 #include "source/face_azimuth.glsl"
 #include "source/lambertian.glsl"
+#include "source/leaning.glsl"
 #include "source/beam_light.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
@@ -104,9 +105,19 @@ float inside_cosine(float cosine, float eta) {
   return max(sqrt(max(1.0 - (1.0 - cosine * cosine) / (eta * eta), 0.0)), LEAST_COSINE);
 }
 
+// Unit, of the facets of a face; its own where none lean.
+vec3 facet_of(uint face, vec3 normal) {
+  uvec3 ids = BODY.faces.at[face];
+  vec3 p = BODY.vertices.at[ids.x];
+  return facet_normal(
+      leaning_of(BODY.face_kinds, face, normal, BODY.vertices.at[ids.y] - p, BODY.vertices.at[ids.z] - p));
+}
+
 // Fluence behind a face that `q` enters by, of light that travels along `incoming` outside.
-vec3 entry_fluence(vec3 q, vec3 incoming, vec3 normal, float eta) {
-  return q / inside_cosine(min(-dot(incoming, normal), 1.0), eta);
+vec3 entry_fluence(uint face, vec3 q, vec3 incoming, vec3 normal, float eta) {
+  vec3 facet = facet_of(face, normal);
+  if (facet == normal) return q / inside_cosine(min(-dot(incoming, normal), 1.0), eta);
+  return q / max(-dot(refracted_by_facet(incoming, normal, facet, eta), normal), LEAST_COSINE);
 }
 
 // Light at a surface vertex from the open faces around it that it enters by. Returns whether there are any.
@@ -120,7 +131,7 @@ bool lit_at_surface(uint beam, uint v, vec3 incoming, bool directed, out vec3 en
     if (directed && dot(incoming, normal) >= 0.0) continue;
     vec3 q = q_at(beam, face, quarter_at(face, v));
     float eta = eta_behind(BODY.face_kinds, face);
-    entry += size * (directed ? entry_fluence(q, incoming, normal / size, eta) : q);
+    entry += size * (directed ? entry_fluence(face, q, incoming, normal / size, eta) : q);
     area += size;
   }
   entry = area > 0.0 ? entry / area : vec3(0);
@@ -135,11 +146,12 @@ Light directed_light(uint beam, uint v, vec3 incoming) {
   float eta = eta_behind(BODY.face_kinds, met.face);
   if (eta > 1.0) {
     // By the normal where the straight way ends one knows how the light was bent.
-    met = back_to_surface(v, -refracted(incoming, normal_of(met.face), eta));
+    vec3 normal = normal_of(met.face);
+    met = back_to_surface(v, -refracted_by_facet(incoming, normal, facet_of(met.face, normal), eta));
   }
   if (!met.found) return NO_LIGHT;
   vec3 q = q_at(beam, met.face, met.quarter);
-  return Light(entry_fluence(q, incoming, normal_of(met.face), eta), met.tau);
+  return Light(entry_fluence(met.face, q, incoming, normal_of(met.face), eta), met.tau);
 }
 
 vec3 surface_normal(uint v) {

@@ -111,6 +111,7 @@ void main() {
   vec3 normal = doubled / max(length(doubled), 1e-30);  // none of a face without area
 
   Refraction body = refraction_behind(push.face_kinds, f);
+  Leaning leaning = leaning_of(push.face_kinds, f, normal, ab, ac);
   vec3 q = vec3(0);
   uint beam = 0u;  // of the light
   uint environment = 0u;
@@ -124,7 +125,7 @@ void main() {
       beam += BEAM_FACE * push.face_count;
       continue;
     }
-    Lamp lamp = Lamp(light, no_shape(), 0u, 0.0, body.eta);
+    Lamp lamp = Lamp(light, no_shape(), 0u, 0.0, body.eta, leaning);
     if (SHAPED) {
       lamp.shape = push.shapes.at[i];
       lamp.width = sqrt(0.5 * length(cross(ab, ac))) / float(push.subdivision);

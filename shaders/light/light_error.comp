@@ -47,6 +47,7 @@ struct Face {
   vec3 normal;
   float width;  // of a sample of it, mm
   float eta;    // of the body behind it
+  Leaning leaning;
 };
 
 Face face_of(uint number) {
@@ -54,8 +55,9 @@ Face face_of(uint number) {
   vec3 a = push.vertices.at[ids.x], b = push.vertices.at[ids.y], c = push.vertices.at[ids.z];
   vec3 doubled = cross(b - a, c - a);
   float twice = length(doubled);
-  return Face(number, mat3(a, b, c), doubled / max(twice, 1e-30), sqrt(0.5 * twice / float(FACE_QUARTERS)),
-              eta_behind(push.face_kinds, number));
+  vec3 normal = doubled / max(twice, 1e-30);
+  return Face(number, mat3(a, b, c), normal, sqrt(0.5 * twice / float(FACE_QUARTERS)),
+              eta_behind(push.face_kinds, number), leaning_of(push.face_kinds, number, normal, b - a, c - a));
 }
 
 bool is_hidden(uint face, vec3 point, vec3 towards, float reach) {
@@ -73,7 +75,7 @@ vec3 unhidden(Lamp lamp, vec3 point, vec3 normal) {
 
 // Number i of the lights, which may be several records; then i is the last of these.
 Lamp lamp_of(inout uint i, Face face) {
-  Lamp lamp = Lamp(push.lights.at[i], no_shape(), 0u, face.width, face.eta);
+  Lamp lamp = Lamp(push.lights.at[i], no_shape(), 0u, face.width, face.eta, face.leaning);
   if (!SHAPED) return lamp;
   lamp.shape = push.shapes.at[i];
   while (push.shapes.at[i].more_follow == 1u) ++i;
@@ -98,7 +100,7 @@ void place_on(Beam rectangle, uint k, inout Lamp lamp, inout uint state) {
 // What is wrong with the maps at a point: of one light, drawn by what it brings, what is hidden of all. Rectangles, which
 // have maps of some of their places alone, come with all their light. k: number of the point in its sample.
 vec3 unlike_maps(Face face, vec3 point, uint k, inout uint state) {
-  Lamp drawn = Lamp(push.lights.at[0], no_shape(), 0u, 0.0, face.eta);
+  Lamp drawn = Lamp(push.lights.at[0], no_shape(), 0u, 0.0, face.eta, face.leaning);
   vec3 light = vec3(0);
   float all = 0.0, chosen = 1.0;
   uint beam = 0u;

@@ -25,7 +25,7 @@ struct Refraction {
 
 // Kinds of the outside faces of a level: the address of a Refraction for each body in two words, low and high, the
 // count of the faces; then for each of these whether light passes it (engine/file/graph.h), and from bit FACE_BODY on
-// the number of its body.
+// the number of its body; and the address, or 0, of how facets of the faces lean (shaders/source/leaning.glsl).
 const uint FACE_HEAD = 3u;
 const uint FACE_OPEN = 0u;
 const uint FACE_REFLECTING = 1u;

@@ -44,4 +44,13 @@ vec3 refracted(vec3 incoming, vec3 normal, float eta) {
   return normalize(incoming / eta + (cos_i / eta - cos_t) * normal);
 }
 
+// By a facet of a face, of that unit normal: as `refracted`, and never out of the face.
+const float LEAST_DOWN = 0.02;
+
+vec3 refracted_by_facet(vec3 incoming, vec3 normal, vec3 facet, float eta) {
+  vec3 inside = refracted(incoming, facet, eta);
+  float up = dot(inside, normal);
+  return facet == normal || up <= -LEAST_DOWN ? inside : normalize(inside - (up + LEAST_DOWN) * normal);
+}
+
 #endif

@@ -6,6 +6,7 @@
 #include "source/beam_light.glsl"
 #include "source/face_azimuth.glsl"
 #include "source/lambertian.glsl"
+#include "source/leaning.glsl"
 #include "source/light_ray.glsl"
 #include "source/rectangle_light.glsl"
 
@@ -33,6 +34,7 @@ struct OpenFace {
   uvec3 ids;
   mat3 corners;
   vec3 normal;
+  vec3 facet;  // normal of what it is made of, for light of lamps
   float area;  // mm^2
   float eta;   // of the body behind it
 };
@@ -46,13 +48,16 @@ bool opens(uint face, out OpenFace open) {
   open.area = 0.5 * length(doubled);
   if (open.area == 0.0) return false;
   open.normal = doubled / (2.0 * open.area);
+  Leaning leaning = leaning_of(BODY.face_kinds, face, open.normal, open.corners[1] - open.corners[0],
+                               open.corners[2] - open.corners[0]);
+  open.facet = facet_normal(leaning);
   open.tet = BODY.face_tets.at[face];
   open.eta = eta_behind(BODY.face_kinds, face);
   return true;
 }
 
 struct Frame {
-  vec3 position, normal, tangent;
+  vec3 position, normal, facet, tangent;
   uint number;  // of the origin of rays, among all of the surface
   float eta;
 };
@@ -61,7 +66,7 @@ struct Frame {
 vec3 incoming(BeamRecord beam, uint ray, Frame at) {
   if (beam.kind == BEAM_DIRECTIONAL) return beam.travel_or_from;
   if (beam.kind == BEAM_POINT) return normalize(at.position - beam.travel_or_from);
-  if (beam.kind == BEAM_RECTANGLE) return rectangle_incoming(beam, at.position, at.normal, at.number, at.eta);
+  if (beam.kind == BEAM_RECTANGLE) return rectangle_incoming(beam, at.position, at.facet, at.number, at.eta);
   return lambertian_incoming(ray, at.normal, at.tangent);
 }
 
@@ -92,14 +97,23 @@ vec3 mean_direction(Frame at) {
   return normalize(sqrt(1.0 - cosine * cosine) * at.tangent - cosine * at.normal);
 }
 
+// The normal by which the light of a beam enters: light from all around knows no facets.
+vec3 entered_by(BeamRecord beam, Frame at) {
+  return beam.kind == BEAM_LAMBERTIAN ? at.normal : at.facet;
+}
+
+// The way inside of light of a beam that travels along `direction` outside.
+vec3 inside_way(BeamRecord beam, vec3 direction, Frame at) {
+  return refracted_by_facet(direction, at.normal, entered_by(beam, at), at.eta);
+}
+
 // The ray inside, of power that has entered at a point of a face. A Lambertian beam by one ray goes straight down, as
 // deep as the mean of its directions: askew it would take light aside, each face to its own side.
 Ray start(BeamRecord way, uint ray, TetPoint point, Frame at, vec3 power) {
   if (way.kind == BEAM_LAMBERTIAN && rays == 1u) {
     return Ray(point, -at.normal, power, vec3(0), 1.0 / mean_cosine(at.eta));
   }
-  vec3 inside = way.kind == BEAM_MEAN ? mean_direction(at)
-                                      : refracted(incoming(way, ray, at), at.normal, at.eta);
+  vec3 inside = way.kind == BEAM_MEAN ? mean_direction(at) : inside_way(way, incoming(way, ray, at), at);
   return Ray(point, inside, power, vec3(0), 1.0);
 }
 
@@ -136,7 +150,7 @@ void walk_from(Beam beam, uint face, uint ray) {
     vec3 power = share * (one ? sum : q[k]);
     if (power == vec3(0)) continue;
     vec3 l = quarter_centre(k);
-    Frame at = Frame(open.corners * l, open.normal, tangent, FACE_QUARTERS * face + k, open.eta);
+    Frame at = Frame(open.corners * l, open.normal, open.facet, tangent, FACE_QUARTERS * face + k, open.eta);
     follow(beam.way, ray, face, start_on_face(open.tet, open.ids, l), at, power);
   }
 }

@@ -26,16 +26,18 @@ float enter_again(Entrance entry, inout Ray ray) {
 // share of the latter.
 const float REFLECTED_RAYS = 4.0;
 
-// What the surface reflects of light that travels along `direction` and whose power `went_in`, where that enters
-// elsewhere.
-void follow_reflected(vec3 direction, uint face, Frame at, vec3 went_in) {
+// What facets of that normal reflect of light that travels along `direction` and whose power `went_in`, where that
+// enters elsewhere; what they reflect into the face is lost.
+void follow_reflected(vec3 direction, vec3 facet, uint face, Frame at, vec3 went_in) {
   if (at.eta == 1.0 || !sees_body(face)) return;
-  float cosine = clamp(-dot(direction, at.normal), 0.0, 1.0);
+  float cosine = clamp(-dot(direction, facet), 0.0, 1.0);
   float transmitted = fresnel_transmittance(cosine, at.eta);
   if (transmitted < 1e-3) return;
   float reflected = 1.0 / transmitted - 1.0, chance = min(REFLECTED_RAYS * reflected, 1.0);
   if (uniform_number(state) >= chance) return;
-  Entrance entry = through_air(face, at.position, normalize(direction + 2.0 * cosine * at.normal), state);
+  vec3 mirrored = normalize(direction + 2.0 * cosine * facet);
+  if (facet != at.normal && dot(mirrored, at.normal) <= 0.0) return;
+  Entrance entry = through_air(face, at.position, mirrored, state);
   if (entry.face == NO_FACE) return;
   Ray ray = Ray(entrance_point(entry), entry.direction, reflected / chance * went_in, vec3(0), 1.0);
   entered_again += ray.power;
@@ -49,19 +51,20 @@ void follow(BeamRecord way, uint ray, uint face, TetPoint point, Frame at, vec3 
   go_in(start(way, ray, point, at, power));
   // Of a bundle that one ray stands for no reflection is known.
   if (push.rays == 1u) return;
-  follow_reflected(incoming(way, ray, at), face, at, power);
+  follow_reflected(incoming(way, ray, at), entered_by(way, at), face, at, power);
 }
 
 // A point of a face, by its barycentric coordinates. It has a direction without a tangent. number: of the ray.
 Frame frame_at(OpenFace open, vec3 l, uint number) {
-  return Frame(open.corners * l, open.normal, vec3(0), number, open.eta);
+  return Frame(open.corners * l, open.normal, open.facet, vec3(0), number, open.eta);
 }
 
-// From where it entered, and on from there what the surface reflects. direction: outside, the way the light travels.
-void enter(OpenFace open, uint face, vec3 l, Frame at, vec3 direction, vec3 power) {
+// From where it entered by facets, and on from there what these reflect. direction: outside, the way the light travels.
+void enter(OpenFace open, vec3 facet, uint face, vec3 l, Frame at, vec3 direction, vec3 power) {
   entered += power;
-  go_in(Ray(start_on_face(open.tet, open.ids, l), refracted(direction, at.normal, at.eta), power, vec3(0), 1.0));
-  follow_reflected(direction, face, at, power);
+  vec3 inside = refracted_by_facet(direction, at.normal, facet, at.eta);
+  go_in(Ray(start_on_face(open.tet, open.ids, l), inside, power, vec3(0), 1.0));
+  follow_reflected(direction, facet, face, at, power);
 }
 
 void walk_from_sky(Beam beam, uint face, uint ray) {
@@ -75,7 +78,7 @@ void walk_from_sky(Beam beam, uint face, uint ray) {
   vec3 l = spread_over_face(number);
   Frame at = frame_at(open, l, number);
   if (field.sky.at[face] < 1.0 && meets_any(line_along(at.position, drawn.towards), face, FAR)) return;
-  enter(open, face, l, at, -drawn.towards, power);
+  enter(open, open.normal, face, l, at, -drawn.towards, power);
 }
 
 // One of as many rays from each quarter of a face, from anywhere in it.
@@ -88,7 +91,7 @@ void walk_from_quarter(Beam beam, uint face, uint ray) {
   vec3 l = spread_over_quarter(number, quarter);
   state = hash(face ^ hash(ray + push.first));
   Frame at = frame_at(open, l, number);
-  enter(open, face, l, at, incoming(beam.way, ray, at), open.area / float(push.rays) * q);
+  enter(open, open.facet, face, l, at, incoming(beam.way, ray, at), open.area / float(push.rays) * q);
 }
 
 // What enters by a face, of one ray.

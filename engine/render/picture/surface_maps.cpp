@@ -41,7 +41,7 @@ const std::optional<NormalMap>& SurfaceMaps::own_normals() {
 }
 
 PlacedNormals SurfaceMaps::placed(const NormalMap& map) {
-  if (own_ && map.slopes == own_->slopes) {
+  if (is_own(map)) {
     return {texels(normals_, map.slopes, "picture/normal map"),
             texture_places_,
             {},

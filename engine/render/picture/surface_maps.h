@@ -23,6 +23,9 @@ class SurfaceMaps {
   // The normal texture of the file, as a map without a placement; none of a file without one.
   const std::optional<NormalMap>& own_normals();
 
+  // Whether a map is that one, by whatever strength: it lies by coordinates of the mesh.
+  bool is_own(const NormalMap& map) const { return own_ && map.slopes == own_->slopes; }
+
  private:
   struct Kept {
     std::shared_ptr<const ImagePyramid> image;

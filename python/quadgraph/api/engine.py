@@ -211,6 +211,11 @@ class Engine:
         """
         core.set_edits(self._engine, json.dumps({"edits": [plain_members(edit) for edit in edits]}))
 
+    def set_normal_map(self, normal_map: Mapping[str, Any] | None) -> None:
+        """Let light of lamps enter by a normal map of a scene; None: by the file's own. Raises InputError."""
+        picture = {} if normal_map is None else {"normal_map": plain_members(normal_map)}
+        core.set_normal_map(self._engine, json.dumps({"picture": picture}))
+
     def set_cuts(self, cuts: Sequence[Mapping[str, Any]]) -> None:
         """Cut pieces away, with shortest-path alone (docs/shortest-path.md, "Cuts"). Raises InputError."""
         self._engine.set_cuts(json.dumps([plain_members(cut) for cut in cuts]))

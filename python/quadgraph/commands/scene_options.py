@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import json
 import math
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator
@@ -222,7 +223,10 @@ def inputs(args: argparse.Namespace) -> list[Path | str | None]:
 
 
 def solve(engine: Engine, args: argparse.Namespace) -> dict:
-    """Solve as the options say; the report of `Engine.solve`."""
+    """Solve as the options say, by the light that their normal map lets in; the report of `Engine.solve`."""
+    named = getattr(args, "normal_map", None)
+    picture = {"normal_map": {"image": str(named)}} if named else {}
+    load_core().set_normal_map(engine, json.dumps({"picture": picture}))
     return engine.solve(**keywords(args, SOLVE_GROUPS))
 
 

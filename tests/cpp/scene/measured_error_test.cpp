@@ -163,7 +163,7 @@ TEST_CASE("what was not measured is left to the estimate, and said to be") {
   check_left({.error = 0.05}, other, "under other light");
   other = scene();
   other.as_baked = false;
-  check_left({.error = 0.05}, other, "the body at rest and without edits");
+  check_left({.error = 0.05}, other, "the body at rest and without edits or a normal map");
   const std::string way = "fem with the buried source and fmg-pcg";
   check_left({.method = Method::quadgraph_fv, .error = 0.05}, scene(), way);
   check_left({.solver = SolverKind::dpcg, .error = 0.05}, scene(), way);

@@ -165,7 +165,7 @@ def test_a_body_that_is_not_as_it_was_baked_is_left_to_the_estimate(baked, tmp_p
     ]
     for change in changed:
         found = by_command(tmp_path, scene_file(tmp_path, baked, 0.3, "skin1", **change))
-        assert "at rest and without edits: the solve's own estimate decides" in found.budget
+        assert "at rest and without edits or a normal map: the solve's own estimate decides" in found.budget
         assert found.cycles == 0
     engine = core.Engine(baked)
     engine.set_material("skin1")

@@ -25,6 +25,7 @@ core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not
 SCHEMA = Path(__file__).resolve().parents[3] / "docs" / "scene.schema.json"
 ETA, ALPHA, SIDE = 1.4, 0.3, 20.0
 LIGHT = np.array([0.5, 0.2, 1.0]) / np.linalg.norm([0.5, 0.2, 1.0])  # towards it
+EVEN = [{"type": "ambient", "irradiance": 1.0}]  # enters by the mesh
 BOX = {"centre": [0, 0, 0], "size": [1.001 * SIDE] * 3}
 TOL = 2e-3
 
@@ -132,7 +133,7 @@ def test_light_is_reflected_and_let_out_as_by_a_plate_that_leans(folder, name, c
     assert mean(picture.specular) == pytest.approx(2 * reflected(n, EYE, LIGHT, ALPHA), rel=TOL)
     assert mean(plain.specular) == pytest.approx(2 * reflected(EYE, EYE, LIGHT, ALPHA), rel=TOL)
     through = (1 - reflectance(n @ EYE)) / (1 - reflectance(1.0))
-    shares = np.asarray(picture.scattered) / np.asarray(plain.scattered)
+    shares = np.divide(*(shown(folder, map_, lights=EVEN).scattered for map_ in ({"image": f"{name}.png"}, None)))
     assert shares == pytest.approx(np.full(shares.shape, through), rel=TOL)
 
 
@@ -214,27 +215,23 @@ def test_what_is_mirrored_of_a_sky_goes_by_the_map(folder):
 
 @pytest.mark.parametrize("radiance", ["gathered", "single", "lambertian"])
 def test_any_map_gives_light_that_is_finite_and_positive(folder, radiance):
+    aside = {"shows": 40, "camera": {"azimuth": 70, "elevation": 15}, "radiance": radiance}
+    noisy = {"image": "noise.png", "strength": 10}
     rough = {"image": "flat.png", "placement": BOX, "roughness": 0.05}
-    picture = shown(
-        folder,
-        {"image": "noise.png", "strength": 10},
-        shows=40,
-        camera={"azimuth": 70, "elevation": 15},
-        radiance=radiance,
-        roughness_map=rough,
-    )
-    plain = shown(folder, None, shows=40, camera={"azimuth": 70, "elevation": 15}, radiance=radiance)
-    for layer in ("scattered", "specular", "unscattered", "alpha"):
-        assert np.isfinite(getattr(picture, layer)).all()
-        assert np.min(getattr(picture, layer)) >= 0
-    ratio = np.asarray(picture.scattered).sum() / np.asarray(plain.scattered).sum()
+    lit, even = (shown(folder, noisy, lights=lights, roughness_map=rough, **aside) for lights in (None, EVEN))
+    for picture in (lit, even):
+        for layer in ("scattered", "specular", "unscattered", "alpha"):
+            assert np.isfinite(getattr(picture, layer)).all()
+            assert np.min(getattr(picture, layer)) >= 0
+    plain = shown(folder, None, lights=EVEN, **aside)
+    ratio = np.asarray(even.scattered).sum() / np.asarray(plain.scattered).sum()
     assert 0.6 < ratio < 1.1
 
 
 def test_view_rays_enter_by_the_map(folder):
     """What is gathered along a view ray goes another way, and less comes out by Fresnel."""
     leaning, plain = (
-        np.asarray(shown(folder, map_, radiance="gathered").scattered).mean(axis=(0, 1))
+        np.asarray(shown(folder, map_, radiance="gathered", lights=EVEN).scattered).mean(axis=(0, 1))
         for map_ in ({"image": "steep.png"}, None)
     )
     through = (1 - reflectance(leaned(slopes_of(STEEP), EYE) @ EYE)) / (1 - reflectance(1.0))
@@ -249,8 +246,12 @@ def test_the_command_line_lays_it_over_the_body(folder, tmp_path):
     for name in ("none", "leaning"):
         given = [] if name == "none" else ["--normal-map", str(folder / "leaning.png")]
         assert cli.main([*body, *given, "-o", str(tmp_path / f"{name}.png")]) == 0
+        inside = ["--show", "q", "--size", "240x240"]
+        assert cli.main([*body, *given, *inside, "-o", str(tmp_path / f"{name}-q.png")]) == 0
     pictures = [np.asarray(Image.open(tmp_path / f"{name}.png"), int) for name in ("none", "leaning")]
     assert np.abs(pictures[0] - pictures[1])[8:24, 8:24].mean() > 0.5
+    entered = [np.asarray(Image.open(tmp_path / f"{name}-q.png")) for name in ("none", "leaning")]
+    assert not np.array_equal(*entered)  # the numbers of the legend
     scene = {"body": str(folder / "plate.qgraph"), "picture": {"normal_map": {"image": str(folder / "leaning.png")}}}
     (tmp_path / "scene.json").write_text(json.dumps(scene))
     for text in (core.SceneFile(tmp_path / "scene.json").at(0).json(), json.dumps(scene)):
