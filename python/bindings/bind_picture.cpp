@@ -107,6 +107,24 @@ py::array_t<std::uint8_t> srgb_array(const Picture& picture, const ToneOptions& 
   return array;
 }
 
+py::dict shown_with(const Picture& picture, const std::string& json) {
+  const ToneOptions options = members(json).tone;
+  const gpu::ToneTransform tone = tone_transform(options, exposure_of(picture, options));
+  py::array_t<float> matrix({3, 3});
+  const std::array<glm::vec3, 3> rows = {tone.red, tone.green, tone.blue};
+  for (int row = 0; row < 3; ++row) {
+    for (int c = 0; c < 3; ++c) matrix.mutable_at(row, c) = rows[static_cast<std::size_t>(row)][c];
+  }
+  py::dict d;
+  d["matrix"] = matrix;
+  d["background_top"] = std::array{options.background_top.x, options.background_top.y, options.background_top.z};
+  d["background_bottom"] =
+      std::array{options.background_bottom.x, options.background_bottom.y, options.background_bottom.z};
+  d["transparent"] = options.transparent;
+  d["false_colour"] = picture.false_colour;
+  return d;
+}
+
 void bind_picture(py::module_& module) {
   bind_image(module);
   py::class_<Picture>(module, "Picture", "Linear radiance in W/(mm^2 sr), premultiplied by alpha; top row first.")
@@ -149,6 +167,9 @@ void bind_picture(py::module_& module) {
           [](const Picture& picture, const std::string& json) { return srgb_array(picture, members(json).tone); },
           py::arg("json") = "{}",
           "Tone mapped, (h, w, 3) uint8 sRGB, with the member `picture` of a scene. Raises InputError.")
+      .def("shown_with", &shown_with, py::arg("json") = "{}",
+           "What srgb does around the tone curve: {matrix (3, 3) of exposure and white balance, background_top and "
+           "background_bottom, linear, transparent, false_colour}. Raises InputError.")
       .def(
           "write_png",
           [](const Picture& picture, const std::filesystem::path& path, const Metadata& metadata,

@@ -11,6 +11,7 @@ from quadgraph.base.version import __version__
 
 if TYPE_CHECKING:
     from quadgraph.api.browser_view import BrowserView
+    from quadgraph.api.colour_config import ColourConfig
     from quadgraph.api.deformers import (
         Bend,
         Cage,
@@ -83,6 +84,7 @@ __all__ = [
     "Camera",
     "Certificate",
     "CertifiedPart",
+    "ColourConfig",
     "ColourOptions",
     "ColourReport",
     "Convergence",
@@ -148,6 +150,7 @@ __all__ = [
 # Where the public names live: found when they are first asked for, so that the command line starts without them.
 _PLACES = {
     "quadgraph.api.browser_view": "BrowserView",
+    "quadgraph.api.colour_config": "ColourConfig",
     "quadgraph.api.deformers": "Bend Cage Deformer Displaced Lattice Shapes Stretch Taper Transform Twist",
     "quadgraph.api.derivatives": "ForwardModel Gradient Outgoing Views",
     "quadgraph.api.engine": "Engine",

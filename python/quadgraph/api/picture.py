@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from quadgraph import core
+from quadgraph.api.colour_config import ColourConfig
 from quadgraph.api.reprs import share
 from quadgraph.api.solution import ErrorEstimate
 from quadgraph.api.values import Floats, plain
@@ -135,30 +136,32 @@ class Picture:
         """What the picture was made with, and how good its solve is."""
         return dict(self._metadata)
 
-    def srgb(self, **tone: Any) -> npt.NDArray[np.uint8]:
-        """(h, w, 3) uint8 sRGB, tone mapped. Raises InputError.
+    def srgb(self, config: ColourConfig | None = None, **tone: Any) -> npt.NDArray[np.uint8]:
+        """(h, w, 3) uint8 sRGB, tone mapped; with a config what its display is sent by its view. Raises InputError.
 
         `exposure`, `background`, `tone` and `white_balance` are as in `PictureOptions`.
 
-        With the background "transparent" it is black where there is nothing.
+        With the background "transparent" it is black where there is nothing, and (h, w, 4) with a config.
         """
-        return self._layers.srgb(self._tone(tone))
+        how = self._tone(tone)
+        return config.shown(self._layers, how) if config else self._layers.srgb(how)
 
     def auto_exposure(self, **tone: Any) -> float:
         """Return the stops that the exposure "auto" comes to. tone: as in `srgb`. Raises InputError."""
         return self._layers.auto_exposure(self._tone(tone))
 
-    def save(self, path: str | Path, **tone: Any) -> None:
-        """Write .png or .jpg (8-bit sRGB, as `srgb`) or .exr (float32, linear and not exposed, with layers) at once.
+    def save(self, path: str | Path, config: ColourConfig | None = None, **tone: Any) -> None:
+        """Write .png or .jpg (8 bits, as `srgb`) or .exr (float32, linear and not exposed, with layers) at once.
 
         With the background "transparent" a .png has an alpha channel, and a .jpg is refused. Raises InputError for
         that, for another ending, or if it cannot be written.
         """
-        if image_file.is_jpeg(Path(path)):
+        by_config = config is not None and Path(path).suffix.lower() != ".exr"
+        if by_config or image_file.is_jpeg(Path(path)):
             options = json.loads(self._tone(tone))["picture"]
             if options.get("background") == "transparent":
                 image_file.check_transparent(Path(path))
-            image_file.write(Path(path), self.srgb(**tone), self._metadata)
+            image_file.write(Path(path), self.srgb(config, **tone), self._metadata)
             return
         writers = {".png": self._layers.write_png, ".exr": self._layers.write_exr}
         write = writers.get(Path(path).suffix.lower())

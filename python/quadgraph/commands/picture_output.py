@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,6 +15,7 @@ from quadgraph.base import image_file
 from quadgraph.base.errors import InputError
 
 if TYPE_CHECKING:
+    from quadgraph.api.colour_config import ColourConfig
     from quadgraph.core import Engine, Picture
 
 SUFFIXES = (*image_file.SUFFIXES, ".exr")
@@ -44,6 +45,46 @@ def shown(engine: Engine, how: str) -> Shown:
         lambda picture, path: picture.write_exr(path, engine.metadata, how),
         lambda: engine.metadata,
     )
+
+
+def colour_config(args: argparse.Namespace) -> ColourConfig | None:
+    """The OpenColorIO config that the arguments name, or None. Raises InputError as that does."""
+    if not args.ocio:
+        for name in ("ocio_display", "ocio_view"):
+            if getattr(args, name):
+                raise InputError(f"--{name.replace('_', '-')}: only with --ocio CONFIG")
+        return None
+    if "tone" in args.given:
+        raise InputError("--tone: found with --ocio, whose view takes its place")
+    from quadgraph.api.colour_config import ColourConfig
+
+    return ColourConfig(args.ocio, display=args.ocio_display, view=args.ocio_view)
+
+
+def by_config(shown: Shown, config: ColourConfig | None, how: Callable[[], str]) -> Shown:
+    """The same, but as a config, if there is one, shows light, with the exposure and background of `how`."""
+    if config is None:
+        return shown
+
+    def rows(picture: Picture) -> np.ndarray:
+        return config.shown(picture, how())
+
+    return replace(
+        shown, srgb=rows, write_png=lambda picture, path: image_file.write(path, rows(picture), shown.metadata())
+    )
+
+
+def add_colour_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add --ocio and what belongs to it."""
+    group = parser.add_argument_group("colour management")
+    group.add_argument(
+        "--ocio",
+        metavar="CONFIG",
+        help="show pictures by a view of this OpenColorIO config in place of --tone: a file, or a built-in one, e.g. "
+        "ocio://default (extra `colour`)",
+    )
+    group.add_argument("--ocio-display", default="", metavar="NAME", help="of the config; default: its own")
+    group.add_argument("--ocio-view", default="", metavar="NAME", help="of that display; default: its own")
 
 
 def add_arguments(parser: argparse.ArgumentParser, files: str, report: str) -> None:

@@ -26,6 +26,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     files = "out.png or out.jpg (8-bit sRGB, tone mapped) or out.exr (float32 linear, with layers)"
     picture_output.add_arguments(parser, files, "the report")
+    picture_output.add_colour_arguments(parser)
     render_scene.add_arguments(parser)
 
 
@@ -34,6 +35,7 @@ def run(args: argparse.Namespace) -> int:
     if scene_file.is_scene(args.file):
         return render_scene.run(args)
     render_scene.refuse(args)
+    config = picture_output.colour_config(args)
     for path in args.output:
         picture_output.check(path, args.background)
     outputs.check_outputs([*args.output, args.json], scene_options.inputs(args))
@@ -44,7 +46,8 @@ def run(args: argparse.Namespace) -> int:
     picture = engine.render(told=converging.tell, **options)
     report = converging.report_of(picture, report)
     scene_options.check_validation(engine)
-    shown = picture_output.shown(engine, picture_output.tone(args))
+    how = picture_output.tone(args)
+    shown = picture_output.by_config(picture_output.shown(engine, how), config, lambda: how)
     for path in args.output:
         picture_output.write(picture, path, shown)
     report |= {"passes": engine.passes, "device": engine.device_name, "driver": engine.driver}

@@ -29,6 +29,7 @@ from quadgraph.file import film
 from quadgraph.work.schedulers import add_scheduler_argument, check_several
 
 if TYPE_CHECKING:
+    from quadgraph.api.colour_config import ColourConfig
     from quadgraph.core import SceneFile
 
 
@@ -76,6 +77,9 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _run(args: argparse.Namespace, file: SceneFile) -> int:
+    config = picture_output.colour_config(args)
+    if config and args.scheduler:
+        raise InputError("--ocio: found with --scheduler, allowed is one of them")
     for change in args.set:
         pointer, equals, value = change.partition("=")
         if not equals:
@@ -95,15 +99,15 @@ def _run(args: argparse.Namespace, file: SceneFile) -> int:
             image_file.check_transparent(path)
     read = [*scene_options.inputs(args), *named_files(args.file), *args.set]
     outputs.check_outputs([*args.output, args.json], read, made=args.output if with_numbers else ())
-    reports = _by_tasks(args, file) if args.scheduler and with_numbers else _in_turn(args, file, frames)
+    reports = _by_tasks(args, file) if args.scheduler and with_numbers else _in_turn(args, file, frames, config)
     if args.json:
         atomic_file.write_json(args.json, reports if with_numbers else reports[0])
     return scene_options.exit_status(reports, args.strict)
 
 
-def _in_turn(args: argparse.Namespace, file, frames: Iterable[float]) -> list[dict]:
+def _in_turn(args: argparse.Namespace, file, frames: Iterable[float], config: ColourConfig | None) -> list[dict]:
     stage = load_core().Stage(device=args.device, validation=args.validation)
-    reports = render(stage, file, frames, args.output)
+    reports = render(stage, file, frames, args.output, config)
     summarise(text.size_text(stage.engine), reports, args.output)
     return reports
 
@@ -138,10 +142,12 @@ def named_files(path: Path) -> list[Path]:
     return [found for found in texts if found.is_file()]
 
 
-def render(stage, file, frames: Iterable[float], outputs: list[Path]) -> list[dict]:
-    """Render frames and write each to all outputs; one report per frame."""
-    shown = picture_output.Shown(stage.srgb, stage.write_png, stage.write_exr, lambda: stage.engine.metadata)
+def render(stage, file, frames: Iterable[float], outputs: list[Path], config: ColourConfig | None = None) -> list[dict]:
+    """Render frames and write each to all outputs; one report per frame. config: in place of the scene's tone."""
+    by_tone = picture_output.Shown(stage.srgb, stage.write_png, stage.write_exr, lambda: stage.engine.metadata)
     reports: list[dict] = []
+    now: list[float] = []
+    shown = picture_output.by_config(by_tone, config, lambda: _shown_as(file, now[-1]))
     with (
         frame_output.Frames(outputs, file.at(0).size, file.frames_per_second) as written,
         progress_bar() as progress,
@@ -149,6 +155,7 @@ def render(stage, file, frames: Iterable[float], outputs: list[Path]) -> list[di
         for frame in progress.track(list(frames), description="frames"):
             start = time.perf_counter()
             stage.show(file.at(frame))
+            now.append(frame)
             if not reports:
                 scene_options.tell_map(stage.map_report)
             report = stage.solve()
@@ -160,6 +167,10 @@ def render(stage, file, frames: Iterable[float], outputs: list[Path]) -> list[di
             reports.append(report | {"picture_error": picture.error, "passes": stage.engine.passes})
         written.finish()
     return reports
+
+
+def _shown_as(file, frame: float) -> str:
+    return json.dumps({"picture": json.loads(file.at(frame).json())["picture"]})
 
 
 def badness(report: dict) -> tuple[bool, float]:
