@@ -146,7 +146,7 @@ class Engine {
   // read_image do.
   void set_lights(std::vector<Light> lights);
 
-  // By which facets light of lamps enters: those of this map; none: of the file's own normal texture, where it has one.
+  // By which facets light enters: those of this map; none: of the file's own normal texture, where it has one.
   // A strength of 0 is none of either. Throws InputError as check_options.
   void set_normal_map(const std::optional<NormalMap>& map);
 

@@ -262,7 +262,7 @@ void add_picture(OptionTable& table) {
        .own_form = true,
        .metavar = "IMAGE",
        .help = "a normal map in tangent space (.png, green to the top), laid over all of the body from its front: "
-               "what is mirrored, what enters of lamps and what is seen inside go by it. A scene file places it "
+               "what is mirrored, what enters and what is seen inside go by it. A scene file places it "
                "(docs/scene.md)"},
       normal_map_of, set_normal_map);
   table.member<&Scene::render, &RenderOptions::radiance>({.name = "radiance",

@@ -93,11 +93,15 @@ vec4 quarters_of(Lamp lamp, vec3 a, vec3 ab, vec3 ac, vec3 normal) {
   return weight * quarter;
 }
 
-// What of an environment enters a face, over its power.
-vec3 environment_share(LightShape shape, Refraction body, vec3 normal, uint hidden, uint face) {
-  vec3 all = environment_at(shape, ENVIRONMENT_ENTERING + body.entering, normal);
-  if (uvec2(push.hidden) == uvec2(0)) return push.sky.at[face] * all;
-  return max(all - push.hidden.at[hidden], vec3(0));
+// What of an environment enters a face, over its power: where facets lean, by their side of it as much more or less.
+vec3 environment_share(LightShape shape, Refraction body, vec3 normal, Leaning leaning, uint hidden, uint face) {
+  vec3 all = environment_at(shape, ENVIRONMENT_ENTERING + body.entering, normal), more = vec3(1);
+  if (leaning.cosine != 1.0) {
+    vec3 leant = environment_at(shape, ENVIRONMENT_ENTERING + body.entering, facet_normal(leaning));
+    more = min(leant / max(all, vec3(1e-30)), vec3(2));
+  }
+  if (uvec2(push.hidden) == uvec2(0)) return push.sky.at[face] * more * all;
+  return more * max(all - push.hidden.at[hidden], vec3(0));
 }
 
 void main() {
@@ -131,7 +135,7 @@ void main() {
       lamp.width = sqrt(0.5 * length(cross(ab, ac))) / float(push.subdivision);
     }
     if (SHAPED && light.kind == LIGHT_ENVIRONMENT) {
-      vec3 share = environment_share(lamp.shape, body, normal, environment++ * push.face_count + f, f);
+      vec3 share = environment_share(lamp.shape, body, normal, leaning, environment++ * push.face_count + f, f);
       for (uint c = 0u; c < 3u; ++c) push.beam_q.at[beam + BEAM_RGB * f + c] = share[c] * light.power[c];
       q += share * light.power;
       beam += BEAM_RGB * push.face_count;

@@ -170,7 +170,8 @@ vec3 noise_of(Beam beam, Face face) {
   vec3 sum = vec3(0);
   for (uint ray = 0u; ray < push.rays; ++ray) {
     uint number = push.rays * face.number + ray, state = hash(face.number ^ hash(ray));
-    SkyRay drawn = drawn_from_sky(beam, number, face.normal, face.corners[1] - face.corners[0], face.eta, state);
+    vec3 along = face.corners[1] - face.corners[0];
+    SkyRay drawn = drawn_from_sky(beam, number, face.normal, face.leaning, along, face.eta, state);
     if (drawn.let_in == vec3(0)) continue;
     vec3 point = face.corners * spread_over_face(number);
     if (push.sky.at[face.number] < 1.0 && is_hidden(face.number, point, drawn.towards, FAR)) continue;

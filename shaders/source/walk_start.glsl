@@ -34,7 +34,8 @@ struct OpenFace {
   uvec3 ids;
   mat3 corners;
   vec3 normal;
-  vec3 facet;  // normal of what it is made of, for light of lamps
+  Leaning leaning;
+  vec3 facet;  // normal of what it is made of
   float area;  // mm^2
   float eta;   // of the body behind it
 };
@@ -48,9 +49,9 @@ bool opens(uint face, out OpenFace open) {
   open.area = 0.5 * length(doubled);
   if (open.area == 0.0) return false;
   open.normal = doubled / (2.0 * open.area);
-  Leaning leaning = leaning_of(BODY.face_kinds, face, open.normal, open.corners[1] - open.corners[0],
-                               open.corners[2] - open.corners[0]);
-  open.facet = facet_normal(leaning);
+  open.leaning = leaning_of(BODY.face_kinds, face, open.normal, open.corners[1] - open.corners[0],
+                            open.corners[2] - open.corners[0]);
+  open.facet = facet_normal(open.leaning);
   open.tet = BODY.face_tets.at[face];
   open.eta = eta_behind(BODY.face_kinds, face);
   return true;
@@ -97,7 +98,7 @@ vec3 mean_direction(Frame at) {
   return normalize(sqrt(1.0 - cosine * cosine) * at.tangent - cosine * at.normal);
 }
 
-// The normal by which the light of a beam enters: light from all around knows no facets.
+// The normal by which the light of a beam enters: of a bundle from all around that of the face.
 vec3 entered_by(BeamRecord beam, Frame at) {
   return beam.kind == BEAM_LAMBERTIAN ? at.normal : at.facet;
 }

@@ -60,11 +60,11 @@ Frame frame_at(OpenFace open, vec3 l, uint number) {
 }
 
 // From where it entered by facets, and on from there what these reflect. direction: outside, the way the light travels.
-void enter(OpenFace open, vec3 facet, uint face, vec3 l, Frame at, vec3 direction, vec3 power) {
+void enter(OpenFace open, uint face, vec3 l, Frame at, vec3 direction, vec3 power) {
   entered += power;
-  vec3 inside = refracted_by_facet(direction, at.normal, facet, at.eta);
+  vec3 inside = refracted_by_facet(direction, at.normal, open.facet, at.eta);
   go_in(Ray(start_on_face(open.tet, open.ids, l), inside, power, vec3(0), 1.0));
-  follow_reflected(direction, facet, face, at, power);
+  follow_reflected(direction, open.facet, face, at, power);
 }
 
 void walk_from_sky(Beam beam, uint face, uint ray) {
@@ -72,13 +72,14 @@ void walk_from_sky(Beam beam, uint face, uint ray) {
   if (!opens(face, open)) return;
   uint number = push.first + push.rays * face + ray;
   state = hash(face ^ hash(ray + push.first));
-  SkyRay drawn = drawn_from_sky(beam, number, open.normal, open.corners[1] - open.corners[0], open.eta, state);
+  vec3 along = open.corners[1] - open.corners[0];
+  SkyRay drawn = drawn_from_sky(beam, number, open.normal, open.leaning, along, open.eta, state);
   vec3 power = open.area / float(push.rays) * drawn.let_in * push.scale.at[0].inverse;
   if (power == vec3(0)) return;
   vec3 l = spread_over_face(number);
   Frame at = frame_at(open, l, number);
   if (field.sky.at[face] < 1.0 && meets_any(line_along(at.position, drawn.towards), face, FAR)) return;
-  enter(open, open.normal, face, l, at, -drawn.towards, power);
+  enter(open, face, l, at, -drawn.towards, power);
 }
 
 // One of as many rays from each quarter of a face, from anywhere in it.
@@ -91,7 +92,7 @@ void walk_from_quarter(Beam beam, uint face, uint ray) {
   vec3 l = spread_over_quarter(number, quarter);
   state = hash(face ^ hash(ray + push.first));
   Frame at = frame_at(open, l, number);
-  enter(open, open.facet, face, l, at, incoming(beam.way, ray, at), open.area / float(push.rays) * q);
+  enter(open, face, l, at, incoming(beam.way, ray, at), open.area / float(push.rays) * q);
 }
 
 // What enters by a face, of one ray.

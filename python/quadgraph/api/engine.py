@@ -212,7 +212,7 @@ class Engine:
         core.set_edits(self._engine, json.dumps({"edits": [plain_members(edit) for edit in edits]}))
 
     def set_normal_map(self, normal_map: Mapping[str, Any] | None) -> None:
-        """Let light of lamps enter by a normal map of a scene; None: by the file's own. Raises InputError."""
+        """Let light enter by a normal map of a scene; None: by the file's own. Raises InputError."""
         picture = {} if normal_map is None else {"normal_map": plain_members(normal_map)}
         core.set_normal_map(self._engine, json.dumps({"picture": picture}))
 

@@ -105,6 +105,49 @@ def by_phase(surface) -> np.ndarray:
     return np.bincount(bins, power, 12) / np.bincount(bins, below, 12)
 
 
+def sky_of_one_lobe(file: Path) -> dict:
+    """An environment that is bright about SLANTED, as the fourth power of the cosine with it."""
+    rows, columns = 64, 128
+    down, along = (np.arange(rows) + 0.5) / rows * np.pi, ((np.arange(columns) + 0.5) / columns - 0.5) * 2 * np.pi
+    towards = np.stack(
+        [
+            np.sin(down)[:, None] * np.sin(along),
+            np.cos(down)[:, None] * np.ones(columns),
+            np.sin(down)[:, None] * np.cos(along),
+        ],
+        axis=-1,
+    )
+    bright = np.maximum(towards @ SLANTED, 0) ** 4
+    Image.fromarray(np.repeat(np.round(255 * bright)[..., None], 3, axis=-1).astype(np.uint8)).save(file)
+    return {"type": "environment", "image": str(file)}
+
+
+@pytest.mark.parametrize("correction", [False, True])
+def test_light_of_a_sky_enters_by_places_as_by_the_displaced_surface(folder, correction):
+    lights = [sky_of_one_lobe(folder / "lobe.png")]
+
+    def found(name, map_):
+        return by_phase(solved(folder / f"{name}.qgraph", map_, lights=lights, correction=correction)[1])
+
+    displaced, plain, mapped = found("displaced", None), found("plain", None), found("plain", waves(folder))
+    off = [np.sqrt(np.mean((each - displaced) ** 2)) / displaced.mean() for each in (plain, mapped)]
+    all_ = [each.mean() / displaced.mean() - 1 for each in (plain, mapped)]
+    print(f"sky, correction {correction}: exitance by places {100 * off[0]:.1f}% off")
+    print(f"  without the map, {100 * off[1]:.1f}% with it; in all {100 * all_[0]:+.1f}% and {100 * all_[1]:+.1f}%")
+    assert off[0] > 0.05
+    assert off[1] < 0.5 * off[0]
+    assert abs(all_[1]) < 0.03
+
+
+def test_even_light_is_let_in_alike_by_facets_that_lean(folder):
+    lights = [{"type": "ambient", "irradiance": 1.0}]
+    entered = [
+        np.mean(solved(folder / "plain.qgraph", map_, lights=lights, correction=True, sweeps=1)[0].energy.entered)
+        for map_ in (None, waves(folder))
+    ]
+    assert entered[1] == pytest.approx(entered[0], rel=0.01)
+
+
 @pytest.mark.parametrize(("degrees", "correction"), [(50, False), (50, True), (70, False), (80, False)])
 def test_exitance_by_place_is_that_of_the_displaced_surface(folder, degrees, correction):
     lights = [lamp(towards_at(degrees))]
