@@ -26,6 +26,7 @@ SUBCOMMANDS = {
     "shapes": "shapes",
     "volume": "volume",
     "colours": "colours",
+    "export": "export",
     "info": "info",
     "view": "view",
     "serve": "serve",

@@ -126,9 +126,8 @@ class Engine:
         """What was set for bodies by their names, each a `Material` or a text as --material takes it.
 
         To set them, a mapping: bodies that it does not name have `material`, which is wanted then. To set `material`
-        sets all bodies. Where one of `hosts` has another index of refraction than the body around it, light is mirrored
-        and bent there; methods that leave that out say so in the report of a solve. Raises InputError, also for a body
-        that the file does not have.
+        sets all bodies. One of `hosts` may have an index of refraction of its own; the report of a solve says where the
+        method leaves that out. Raises InputError, also for a body that the file does not have.
         """
         return dict(self._materials)
 

@@ -134,6 +134,6 @@ def test_the_command_shows_bodies_and_scenes_by_it(tmp_path, capsys):
         (["--ocio", str(tmp_path)], "found no such file"),
     ):
         capsys.readouterr()
-        assert main(["render", str(tiny.PATH), *options, "-o", str(tmp_path / "not.png")]) == 2
+        assert main(["render", str(tiny.PATH), *options, "-o", str(tmp_path / "not.png")]) == 1
         assert message in capsys.readouterr().err
     assert not (tmp_path / "not.png").exists()

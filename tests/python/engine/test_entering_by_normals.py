@@ -113,13 +113,13 @@ def sky_of_one_lobe(file: Path) -> dict:
         [
             np.sin(down)[:, None] * np.sin(along),
             np.cos(down)[:, None] * np.ones(columns),
-            np.sin(down)[:, None] * np.cos(along),
+            -np.sin(down)[:, None] * np.cos(along),  # the middle is behind the body
         ],
         axis=-1,
     )
     bright = np.maximum(towards @ SLANTED, 0) ** 4
     Image.fromarray(np.repeat(np.round(255 * bright)[..., None], 3, axis=-1).astype(np.uint8)).save(file)
-    return {"type": "environment", "image": str(file)}
+    return {"type": "environment", "file": str(file), "radiance": 1.0}
 
 
 @pytest.mark.parametrize("correction", [False, True])

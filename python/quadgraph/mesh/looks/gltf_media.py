@@ -47,6 +47,36 @@ def single_scatter_albedo(many: np.ndarray, g: float) -> np.ndarray:
     return np.clip((1 - s**2) / (1 - g * s**2), 0, 1)
 
 
+def many_scatter_albedo(single: np.ndarray) -> np.ndarray:
+    """Albedo of many events from that of one, without anisotropy: `single_scatter_albedo` inverted by halving."""
+    low, high = np.zeros_like(single), np.ones_like(single)
+    for _ in range(50):
+        middle = (low + high) / 2
+        less = single_scatter_albedo(middle, 0.0) < single
+        low, high = np.where(less, middle, low), np.where(less, high, middle)
+    return (low + high) / 2
+
+
+def extensions_of(sigma_s_prime: np.ndarray, sigma_a: np.ndarray, eta: float, thickness: float) -> dict[str, Any]:
+    """The extensions that `eta_of` and `medium_of` read as these coefficients, (3,), per unit of the file's lengths.
+
+    thickness: of the body, in that unit, for renderers that cast no rays through it. Light that scatters forwards is
+    written as the similar one that does not.
+    """
+    sigma_t = sigma_s_prime + sigma_a
+    found: dict[str, Any] = {"KHR_materials_ior": {"ior": eta}}
+    found["KHR_materials_transmission"] = {"transmissionFactor": 1.0}
+    volume: dict[str, Any] = {"thicknessFactor": thickness}
+    if sigma_t.max() > 0:
+        distance = 1 / sigma_t.max()  # so that no colour is below 1/e
+        volume |= {"attenuationDistance": float(distance), "attenuationColor": np.exp(-sigma_t * distance).tolist()}
+    found["KHR_materials_volume"] = volume
+    if sigma_s_prime.max() > 0:
+        many = many_scatter_albedo(sigma_s_prime / np.maximum(sigma_t, 1e-30))
+        found["KHR_materials_volume_scatter"] = {"multiscatterColor": many.tolist(), "scatterAnisotropy": 0.0}
+    return found
+
+
 def eta_of(where: str, extensions: dict[str, Any]) -> float | None:
     """Index of refraction by KHR_materials_ior; None where it says nothing, or 0, which is glTF's word for mirrors."""
     if "KHR_materials_ior" not in extensions:
