@@ -26,10 +26,12 @@ struct InnerSurface {
   float reflected;  // share
 };
 
-// Unit normal of the face opposite a corner of a tet, out of the tet.
+// Unit normal of the face opposite a corner of a tet, out of the tet. By comparison, not by index: of vectors in memory
+// Mesa 22's lavapipe takes other components than those that invocations side by side ask for.
 vec3 normal_across(uint tet, uint place) {
-  return -normalize(vec3(BODY.cells.at[tet].along_x[place], BODY.cells.at[tet].along_y[place],
-                         BODY.cells.at[tet].along_z[place]));
+  vec4 own = mix(vec4(0), vec4(1), corner_at(place));
+  return -normalize(vec3(dot(own, BODY.cells.at[tet].along_x), dot(own, BODY.cells.at[tet].along_y),
+                         dot(own, BODY.cells.at[tet].along_z)));
 }
 
 // Of that normal, between a tet and the one across.

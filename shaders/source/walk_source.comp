@@ -49,11 +49,11 @@ void main() {
   absorbed = vec3(0);
   unscattered = vec3(0);
   segments = 0u;
-  chance_state = hash(i);
   uint per_face = 0u;
   for (uint b = 0u; b < push.beam_count; ++b) per_face += rays_of(b);
   if (i >= BODY.face_count * per_face) return;
   uvec2 own = face_and_ray(i, per_face);
+  chance_state = hash(own.x ^ hash(own.y));
   uint ray = own.y;
   uint beam = 0u;
   while (ray >= rays_of(beam)) ray -= rays_of(beam++);
