@@ -5,7 +5,6 @@
 
 #include "engine/base/error.h"
 #include "engine/base/text.h"
-#include "engine/optics/depth.h"
 
 namespace quadgraph {
 namespace {
@@ -103,19 +102,16 @@ GivenGrid grid_of_bodies(const Level& level, std::span<const BodyMaterial> mater
   for (std::uint32_t t = 0; t < level.tet_count(); ++t) mark_tet(level, t, points, body);
   spread(points, body);
   GivenGrid made{.grid = {}, .optical = std::vector<gpu::Optical>(points.count(), {glm::vec3(0), glm::vec3(1)})};
-  for (std::size_t i = 0; i < materials.size(); ++i) {
-    std::vector<std::size_t> rows;
-    std::vector<glm::vec3> places;
-    points.each(glm::uvec3(0), points.size - 1u, [&](const glm::uvec3& at) {
-      if (body[points.number(at)] != i) return;
-      rows.push_back(points.number(at));
-      places.push_back(points.place(at));
-    });
-    const std::vector<float> depths =
-        materials[i].wants_depth ? depth_below_surface(level, places) : std::vector<float>{};
-    const std::vector<gpu::Optical> found = materials[i].at(places, depths);
-    for (std::size_t k = 0; k < rows.size(); ++k) made.optical[rows[k]] = found[k];
-  }
+  std::vector<std::size_t> rows;
+  std::vector<glm::vec3> places;
+  points.each(glm::uvec3(0), points.size - 1u, [&](const glm::uvec3& at) {
+    if (body[points.number(at)] == nothing) return;
+    rows.push_back(points.number(at));
+    places.push_back(points.place(at));
+  });
+  const std::vector<gpu::Optical> found =
+      coefficients(level, places, [&](std::uint32_t i) { return body[rows[i]]; }, materials);
+  for (std::size_t k = 0; k < rows.size(); ++k) made.optical[rows[k]] = found[k];
   made.grid = {.size = points.size,
                .optical = made.optical,
                .spacing = glm::vec3(points.spacing),

@@ -17,8 +17,8 @@ struct GivenGrid {
 };
 
 // Coefficients at points over the box of a level, in the shape at rest: in a tet those of its body's material there,
-// beside the bodies those of what is near. materials: by body, all of one index of refraction; none: of a body that
-// absorbs alone. Throws InputError where the indices differ, naming `bodies`.
+// close to the bodies those of what is near, and farther off an absorption that nothing looks up. materials: by body.
+// Throws InputError where their indices of refraction differ, naming `bodies`.
 GivenGrid grid_of_bodies(const Level& level, std::span<const BodyMaterial> materials,
                          std::span<const std::string> bodies);
 

@@ -13,25 +13,6 @@
 namespace quadgraph {
 namespace {
 
-using OfRow = std::function<std::uint32_t(std::uint32_t)>;
-
-// At all points of a level, each by the material of its body.
-std::vector<gpu::Optical> coefficients(const Level& level, std::span<const glm::vec3> points, const OfRow& body_of,
-                                       std::span<const BodyMaterial> materials) {
-  std::vector<std::vector<std::uint32_t>> rows(materials.size());
-  for (std::uint32_t i = 0; i < points.size(); ++i) rows[body_of(i)].push_back(i);
-  std::vector<gpu::Optical> optical(points.size());
-  for (std::size_t body = 0; body < materials.size(); ++body) {
-    std::vector<glm::vec3> places;
-    for (std::uint32_t row : rows[body]) places.push_back(points[row]);
-    const BodyMaterial& material = materials[body];
-    const std::vector<float> depths = material.wants_depth ? depth_below_surface(level, places) : std::vector<float>{};
-    const std::vector<gpu::Optical> found = material.at(places, depths);
-    for (std::size_t k = 0; k < found.size(); ++k) optical[rows[body][k]] = found[k];
-  }
-  return optical;
-}
-
 std::vector<gpu::Optical> at_nodes(const Level& level, std::span<const BodyMaterial> materials) {
   const auto body_of = [&](std::uint32_t node) {
     return node < level.tet_count() ? level.body_of_tet(node) : level.body_of_face(node - level.tet_count());
@@ -76,6 +57,23 @@ void check_materials(std::span<const BodyMaterial> materials, std::span<const st
 }
 
 }  // namespace
+
+std::vector<gpu::Optical> coefficients(const Level& level, std::span<const glm::vec3> points,
+                                       const std::function<std::uint32_t(std::uint32_t)>& body_of,
+                                       std::span<const BodyMaterial> materials) {
+  std::vector<std::vector<std::uint32_t>> rows(materials.size());
+  for (std::uint32_t i = 0; i < points.size(); ++i) rows[body_of(i)].push_back(i);
+  std::vector<gpu::Optical> optical(points.size());
+  for (std::size_t body = 0; body < materials.size(); ++body) {
+    std::vector<glm::vec3> places;
+    for (std::uint32_t row : rows[body]) places.push_back(points[row]);
+    const BodyMaterial& material = materials[body];
+    const std::vector<float> depths = material.wants_depth ? depth_below_surface(level, places) : std::vector<float>{};
+    const std::vector<gpu::Optical> found = material.at(places, depths);
+    for (std::size_t k = 0; k < found.size(); ++k) optical[rows[body][k]] = found[k];
+  }
+  return optical;
+}
 
 std::string index_warning(std::span<const BodyMaterial> materials, std::span<const std::string> bodies,
                           const std::vector<std::uint32_t>& outermost) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/file/graph.h"
 #include "engine/optics/material.h"
 
 namespace quadgraph {
@@ -20,6 +21,11 @@ struct BodyMaterial {
   // Coefficients at points, mm, in the shape at rest; depths: mm below the surface, empty unless they are wanted.
   std::function<std::vector<gpu::Optical>(std::span<const glm::vec3> points, std::span<const float> depths)> at{};
 };
+
+// At points of a level, mm at rest, each by the material of its body.
+std::vector<gpu::Optical> coefficients(const Level& level, std::span<const glm::vec3> points,
+                                       const std::function<std::uint32_t(std::uint32_t)>& body_of,
+                                       std::span<const BodyMaterial> materials);
 
 // Of a material's text. Throws InputError as parse_material.
 BodyMaterial body_material(const std::string& text);

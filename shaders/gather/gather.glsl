@@ -120,10 +120,10 @@ LocalLight light_against(TetPoint at, vec3 direction) {
   return light;
 }
 
-// Unit normal, onward, where a ray leaves a tet for another body by the face opposite a corner: of the smooth surface
-// that these share, as far as no crease parts it from the face.
-vec3 shared_normal(TetPoint at, uint place) {
-  vec3 flat_normal = normal_across(at.tet, place), sum = vec3(0);
+// Unit normal, onward, where a ray leaves a tet for another body by the face opposite a corner, of that unit normal: of
+// the smooth surface that these share, as far as no crease parts it from the face.
+vec3 shared_normal(TetPoint at, uint place, vec3 flat_normal) {
+  vec3 sum = vec3(0);
   uvec4 ids = BODY.tets.at[at.tet];
   for (uint k = 0u; k < 4u; ++k) {
     if (k == place) continue;
@@ -138,9 +138,8 @@ vec3 shared_normal(TetPoint at, uint place) {
 // Light mirrored beside that counts as even. Returns whether it goes through; bars its way where not.
 bool passes(inout TetPoint at, uint place, uint across, LocalLight here, inout vec3 direction, inout vec3 left,
             inout vec3 radiance) {
-  if (!bends(at.tet, across)) return true;
-  InnerSurface met = inner_surface(at.tet, across, direction, shared_normal(at, place));
   vec3 flat_normal = normal_across(at.tet, place);
+  InnerSurface met = inner_surface(at.tet, across, direction, shared_normal(at, place, flat_normal));
   if (met.reflected == 1.0) {
     direction = -outward_of(flat_normal, -mirrored(met, direction));
     bar(at, place);
@@ -171,8 +170,11 @@ Gathered gather(TetPoint at, vec3 direction, inout Facets facets) {
     if (ends(left, sum.radiance, last, lost)) break;
     uint crossing = crossing_at(at.tet, exit.place), across = crossing >> CROSSING_BITS;
     if (across < BODY.tet_count) {
-      if (passes(at, exit.place, across, here, direction, left, sum.radiance)) enter(at, exit.place, crossing);
-      if (uvec2(BODY.etendue) != uvec2(0)) here = light_against(at, direction);
+      bool turns = bends(at.tet, across);
+      if (!turns || passes(at, exit.place, across, here, direction, left, sum.radiance)) {
+        enter(at, exit.place, crossing);
+      }
+      if (turns) here = light_against(at, direction);
       continue;
     }
     bar(at, exit.place);

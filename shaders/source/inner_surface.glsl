@@ -8,10 +8,8 @@
 #include "material/fresnel.glsl"
 #include "source/tet_ray.glsl"
 
-// Square of the index of refraction in a tet over that of the outermost body around it: so many times its volume counts.
-float etendue_in(uint tet) {
-  return number_or_one(BODY.etendue, tet);
-}
+// BODY.etendue is of a tet the square of its index of refraction over that of the outermost body around it: so many times
+// its volume counts.
 
 // Whether light is bent on its way from one tet into another that it touches.
 bool bends(uint tet, uint across) {

@@ -35,8 +35,8 @@ bool starts() {
   return uvec2(push.swept) == uvec2(0);
 }
 
-// Flux of the fluence in a tet, times its volume and etendue; sigma: extinction less what scatters on, 1/mm. Nowhere more than the
-// fluence itself.
+// Flux of the fluence in a tet, times its volume and etendue; sigma: extinction less what scatters on, 1/mm. Nowhere
+// more than the fluence itself.
 mat3 flux_in(uint tet, vec3 sigma, out float volume) {
   uvec4 corners = forward.tets.at[tet];
   vec3 p = forward.vertices.at[corners.x], f = fluence(corners.x);

@@ -14,7 +14,7 @@ namespace quadgraph {
 inline constexpr Range normal_map_strength_range{.low = 0, .high = 10};
 
 // A picture projected onto the body that says how its surface leans: for what it reflects, for view rays that enter it,
-// and for light of lamps that does (engine/render/light/leaning.h). Texels hold two slopes, by which the normal leans
+// and for light that does (engine/render/light/leaning.h). Texels hold two slopes, by which the normal leans
 // towards the picture's right and its top, and the mean of their squares together
 // (engine/render/light/normal_map_file.h).
 struct NormalMap {

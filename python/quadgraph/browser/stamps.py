@@ -7,6 +7,7 @@ is read before its size is known.
 from __future__ import annotations
 
 import contextlib
+import copy
 import io
 import json
 import re
@@ -110,7 +111,7 @@ class Stamps:
 
     def bundle(self, document: Mapping[str, Any]) -> bytes:
         """A .zip of a scene file and, beside it, what was sent of the images that it names."""
-        edits = json.loads(json.dumps(document.get("edits", [])))
+        edits = copy.deepcopy(document.get("edits", []))
         for edit in _edits_in(edits):
             for member in _STAMPED:
                 if member in edit and Path(edit[member]).parent == self.folder:

@@ -61,13 +61,11 @@ def colour_config(args: argparse.Namespace) -> ColourConfig | None:
     return ColourConfig(args.ocio, display=args.ocio_display, view=args.ocio_view)
 
 
-def by_config(shown: Shown, config: ColourConfig | None, how: Callable[[], str]) -> Shown:
-    """The same, but as a config, if there is one, shows light, with the exposure and background of `how`."""
-    if config is None:
-        return shown
+def by_config(shown: Shown, config: ColourConfig, how: str) -> Shown:
+    """The same, but as a config shows light, with the exposure and background of `how`, which is as of `tone`."""
 
     def rows(picture: Picture) -> np.ndarray:
-        return config.shown(picture, how())
+        return config.shown(picture, how)
 
     return replace(
         shown, srgb=rows, write_png=lambda picture, path: image_file.write(path, rows(picture), shown.metadata())

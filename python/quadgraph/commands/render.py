@@ -47,7 +47,9 @@ def run(args: argparse.Namespace) -> int:
     report = converging.report_of(picture, report)
     scene_options.check_validation(engine)
     how = picture_output.tone(args)
-    shown = picture_output.by_config(picture_output.shown(engine, how), config, lambda: how)
+    shown = picture_output.shown(engine, how)
+    if config:
+        shown = picture_output.by_config(shown, config, how)
     for path in args.output:
         picture_output.write(picture, path, shown)
     report |= {"passes": engine.passes, "device": engine.device_name, "driver": engine.driver}

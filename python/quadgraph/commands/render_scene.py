@@ -146,8 +146,6 @@ def render(stage, file, frames: Iterable[float], outputs: list[Path], config: Co
     """Render frames and write each to all outputs; one report per frame. config: in place of the scene's tone."""
     by_tone = picture_output.Shown(stage.srgb, stage.write_png, stage.write_exr, lambda: stage.engine.metadata)
     reports: list[dict] = []
-    now: list[float] = []
-    shown = picture_output.by_config(by_tone, config, lambda: _shown_as(file, now[-1]))
     with (
         frame_output.Frames(outputs, file.at(0).size, file.frames_per_second) as written,
         progress_bar() as progress,
@@ -155,7 +153,7 @@ def render(stage, file, frames: Iterable[float], outputs: list[Path], config: Co
         for frame in progress.track(list(frames), description="frames"):
             start = time.perf_counter()
             stage.show(file.at(frame))
-            now.append(frame)
+            shown = picture_output.by_config(by_tone, config, _shown_as(file, frame)) if config else by_tone
             if not reports:
                 scene_options.tell_map(stage.map_report)
             report = stage.solve()

@@ -105,6 +105,22 @@ def by_phase(surface) -> np.ndarray:
     return np.bincount(bins, power, 12) / np.bincount(bins, below, 12)
 
 
+def beside_displaced(folder: Path, lights: list, correction: bool) -> tuple[list[float], list[float]]:
+    """How far the exitance of the plain slab without and with the map of the waves is off the displaced one's: RMS over
+    the parts of a wave, and in all.
+    """
+
+    def found(name, map_):
+        return by_phase(solved(folder / f"{name}.qgraph", map_, lights=lights, correction=correction)[1])
+
+    displaced, plain, mapped = found("displaced", None), found("plain", None), found("plain", waves(folder))
+    off = [float(np.sqrt(np.mean((each - displaced) ** 2)) / displaced.mean()) for each in (plain, mapped)]
+    all_ = [float(each.mean() / displaced.mean() - 1) for each in (plain, mapped)]
+    print(f"correction {correction}: exitance by places {100 * off[0]:.1f}% off without the map, {100 * off[1]:.1f}%")
+    print(f"  with it; in all {100 * all_[0]:+.1f}% and {100 * all_[1]:+.1f}%")
+    return off, all_
+
+
 def sky_of_one_lobe(file: Path) -> dict:
     """An environment that is bright about SLANTED, as the fourth power of the cosine with it."""
     rows, columns = 64, 128
@@ -124,16 +140,7 @@ def sky_of_one_lobe(file: Path) -> dict:
 
 @pytest.mark.parametrize("correction", [False, True])
 def test_light_of_a_sky_enters_by_places_as_by_the_displaced_surface(folder, correction):
-    lights = [sky_of_one_lobe(folder / "lobe.png")]
-
-    def found(name, map_):
-        return by_phase(solved(folder / f"{name}.qgraph", map_, lights=lights, correction=correction)[1])
-
-    displaced, plain, mapped = found("displaced", None), found("plain", None), found("plain", waves(folder))
-    off = [np.sqrt(np.mean((each - displaced) ** 2)) / displaced.mean() for each in (plain, mapped)]
-    all_ = [each.mean() / displaced.mean() - 1 for each in (plain, mapped)]
-    print(f"sky, correction {correction}: exitance by places {100 * off[0]:.1f}% off")
-    print(f"  without the map, {100 * off[1]:.1f}% with it; in all {100 * all_[0]:+.1f}% and {100 * all_[1]:+.1f}%")
+    off, all_ = beside_displaced(folder, [sky_of_one_lobe(folder / "lobe.png")], correction)
     assert off[0] > 0.05
     assert off[1] < 0.5 * off[0]
     assert abs(all_[1]) < 0.03
@@ -150,16 +157,7 @@ def test_even_light_is_let_in_alike_by_facets_that_lean(folder):
 
 @pytest.mark.parametrize(("degrees", "correction"), [(50, False), (50, True), (70, False), (80, False)])
 def test_exitance_by_place_is_that_of_the_displaced_surface(folder, degrees, correction):
-    lights = [lamp(towards_at(degrees))]
-
-    def found(name, map_):
-        return by_phase(solved(folder / f"{name}.qgraph", map_, lights=lights, correction=correction)[1])
-
-    displaced, plain, mapped = found("displaced", None), found("plain", None), found("plain", waves(folder))
-    off = [np.sqrt(np.mean((each - displaced) ** 2)) / displaced.mean() for each in (plain, mapped)]
-    all_ = [each.mean() / displaced.mean() - 1 for each in (plain, mapped)]
-    print(f"lamp at {degrees} degrees, correction {correction}: exitance by places {100 * off[0]:.1f}% off")
-    print(f"  without the map, {100 * off[1]:.1f}% with it; in all {100 * all_[0]:+.1f}% and {100 * all_[1]:+.1f}%")
+    off, all_ = beside_displaced(folder, [lamp(towards_at(degrees))], correction)
     assert off[0] > 0.1
     assert off[1] < 0.3 * off[0]
     assert abs(all_[1]) < 0.05
