@@ -4,7 +4,6 @@
 #include <imgui_stdlib.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <glm/geometric.hpp>
 
@@ -24,9 +23,7 @@ std::string window_text(std::string_view unit) {
 
 // The label of a field: its name in scene files with a capital.
 std::string label_of(const LightField& field) {
-  std::string label = std::string(field.name) + "##light";
-  label.front() = static_cast<char>(std::toupper(label.front()));
-  return label;
+  return capitalised(field.name) + "##light";
 }
 
 // Brightness and colour of a light whose power spans many decades.

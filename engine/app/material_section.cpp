@@ -7,6 +7,7 @@
 
 #include "engine/app/body_choice.h"
 #include "engine/app/panel_widgets.h"
+#include "engine/optics/coat.h"
 #include "engine/optics/material.h"
 #include "engine/render/picture/tone_map.h"
 #include "engine/scene/material_look.h"
@@ -48,7 +49,7 @@ void draw_swatches(State& state, float unit) {
   int at = 0;
   for (const Swatch& swatch : swatches()) {
     if (at++ % swatches_in_row != 0) ImGui::SameLine();
-    const bool chosen = chosen_material(state) == swatch.name;
+    const bool chosen = without_coat(chosen_material(state)) == swatch.name;
     if (swatch_button(swatch, chosen, {wide, 22 * unit})) take(state, swatch.name);
   }
   ImGui::PopStyleVar();
@@ -67,11 +68,12 @@ void draw_bodies(State& state) {
 
 void draw_preset(State& state) {
   const auto& names = material_names();
-  const auto found = std::find(names.begin(), names.end(), chosen_material(state));
+  const std::string own = without_coat(chosen_material(state));
+  const auto found = std::find(names.begin(), names.end(), own);
   const char* shown = found == names.end() ? "Custom" : found->c_str();
   if (!ImGui::BeginCombo("Preset", shown, ImGuiComboFlags_HeightLarge)) return;
   for (const std::string& name : names) {
-    const bool chosen = name == chosen_material(state);
+    const bool chosen = name == own;
     if (ImGui::Selectable(name.c_str(), chosen)) take(state, name);
     if (chosen) ImGui::SetItemDefaultFocus();
   }
@@ -87,12 +89,39 @@ void draw_look(State& state) {
     if (other_colour || other_distance) {
       auto& asked = state.scene.render.roughness;
       if (!asked) asked = stated_roughness(chosen_material(state));
-      choose_material(state, material_of(changed));
+      choose_material(state, with_coat(material_of(changed), stated_coat(chosen_material(state))));
     }
   }
   auto& asked = state.scene.render.roughness;
   float roughness = asked.value_or(stated_roughness(chosen_material(state)).value_or(default_roughness));
   if (slide("Roughness", roughness, roughness_range, "%.2f")) asked = roughness;
+}
+
+// Of no name as "Other".
+std::string name_of(const Coat& coat) {
+  if (coat.share == 0) return "None";
+  for (const NamedCoat& each : named_coats()) {
+    if (each.coat == coat) return capitalised(each.name);
+  }
+  return "Other";
+}
+
+// A clear layer over the material, whatever that is.
+void draw_coat(State& state) {
+  const Coat before = stated_coat(chosen_material(state));
+  Coat coat = before;
+  if (ImGui::BeginCombo("Coat", name_of(coat).c_str())) {
+    if (ImGui::Selectable("None", coat.share == 0)) coat.share = 0;
+    for (const NamedCoat& each : named_coats()) {
+      if (ImGui::Selectable(capitalised(each.name).c_str(), each.coat == coat)) coat = each.coat;
+    }
+    ImGui::EndCombo();
+  }
+  if (before.share > 0) {
+    slide("Coverage", coat.share, coat_range, "%.2f");
+    slide("Coat roughness", coat.roughness, roughness_range, "%.2f");
+  }
+  if (coat != before) choose_material(state, with_coat(chosen_material(state), coat));
 }
 
 void draw_text(State& state) {
@@ -119,6 +148,7 @@ void draw_material(State& state, float unit) {
   draw_preset(state);
   draw_swatches(state, unit);
   draw_look(state);
+  draw_coat(state);
   draw_text(state);
 }
 

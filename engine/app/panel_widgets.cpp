@@ -2,6 +2,7 @@
 
 #include <imgui.h>
 
+#include <cctype>
 #include <cstdint>
 
 #include "engine/render/picture/tone_map.h"
@@ -56,6 +57,12 @@ void tell(const char* name, const std::string& value) {
   ImGui::TextDisabled("%s", name);
   ImGui::SameLine(0.26f * ImGui::GetContentRegionMax().x);
   ImGui::TextUnformatted(value.c_str());
+}
+
+std::string capitalised(std::string_view name) {
+  std::string label(name);
+  label.front() = static_cast<char>(std::toupper(label.front()));
+  return label;
 }
 
 std::string percent(double share) {

@@ -48,6 +48,9 @@ bool button(const char* label, bool enabled = true, bool beside = true);
 // A dim name and a value after it.
 void tell(const char* name, const std::string& value);
 
+// A name as a label shows it, with a capital.
+std::string capitalised(std::string_view name);
+
 // "12.3%", with as many digits as are worth reading.
 std::string percent(double share);
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/base/solve_options.h"
+#include "engine/optics/optical_surface.h"
 
 namespace quadgraph {
 
@@ -17,10 +18,11 @@ struct Boundary {
 };
 
 // From the exact Fresnel moments; for the published baselines (quadgraph-fdm and polygrid, diffuse source, diffusion)
-// from the published polynomial F_dr and A [QG Eq. 2, 6]. `model` is not `automatic`, eta in [1, 3].
+// from the published polynomial F_dr and A [QG Eq. 2, 6], which know no coat. `model` is not `automatic`, eta in [1,
+// 3].
 //
 // K is that of Klose and Larsen 2006 (docs/physics.md, "Boundary matrix"), replaced by its symmetric part, in the
 // variables (phi, phi2) of operator.h. Its k11 with phi2 = 0 is the two-moment 1/(2A), A = (1 + 3 R2) / (1 - 2 R1).
-Boundary boundary_of(Method method, Source source, Model model, double eta);
+Boundary boundary_of(Method method, Source source, Model model, const OpticalSurface& surface);
 
 }  // namespace quadgraph

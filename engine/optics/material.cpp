@@ -22,7 +22,8 @@ namespace {
 constexpr std::array<std::string_view, gpu::PATTERNS> patterns = {"none",  "veins", "clouds",  "bands",
                                                                   "rings", "spots", "checker", "layers"};
 constexpr std::string_view allowed_keys =
-    "pattern, eta, roughness, period, sharpness, sigma_s_prime, sigma_a, or reflectance, mean_free_path, or sigma_s "
+    "pattern, eta, roughness, coat, coat_eta, coat_roughness, period, sharpness, sigma_s_prime, sigma_a, or "
+    "reflectance, mean_free_path, or sigma_s "
     "and g in place of sigma_s_prime, or g beside it, and these six after second_";
 constexpr std::string_view roughness_key = "roughness";
 
@@ -138,8 +139,8 @@ void check_range(std::string_view key, float value, const Range& range, const st
   if (!range.contains(value)) bad_field(key, std::to_string(value), allowed);
 }
 
-// Takes one field that is not a coefficient; false if there is none of that name. The roughness is of the surface, and
-// not of the coefficients: stated_roughness tells it.
+// Takes one field that is not a coefficient; false if there is none of that name. Roughness and coat are of the
+// surface, and not of the coefficients: stated_roughness and stated_coat tell them.
 bool take_field(gpu::Material& material, std::string_view key, std::string_view value) {
   if (key == "eta") {
     material.eta = parse_number(key, value);
@@ -152,7 +153,8 @@ bool take_field(gpu::Material& material, std::string_view key, std::string_view 
   } else if (key == roughness_key) {
     check_range(key, parse_number(key, value), roughness_range, roughness_range.text());
   } else {
-    return false;
+    Coat checked;
+    return take_coat(checked, key, value);
   }
   return true;
 }

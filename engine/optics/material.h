@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/base/range.h"
+#include "engine/optics/coat.h"
 #include "shaders/shared/shared.h"
 
 namespace quadgraph {
@@ -39,9 +40,10 @@ std::string_view pattern_name(const gpu::Material& material);
 // "sigma_s=20,g=0.9,sigma_a=0.01" the scattering of a phase function of mean cosine g, whose reduced coefficient is
 // (1 - g) sigma_s; g beside a sigma_s_prime, or a name, says what that was reduced by. "NAME,key=value" overrides a
 // named material. "pattern=veins,period=16,sharpness=14" mixes in second_sigma_s_prime and second_sigma_a, or
-// second_reflectance and second_mean_free_path, or second_sigma_s and second_g. "roughness=0.1" is of the surface
-// (stated_roughness). Throws InputError naming the field, what was found and what is allowed (sigma_s_prime, sigma_a 0
-// to 1e6, eta in [1, 3], mean_free_path > 0, g above -1 and below 1, roughness in roughness_range; all finite).
+// second_reflectance and second_mean_free_path, or second_sigma_s and second_g. "roughness=0.1" and
+// "coat=water,coat_roughness=0.1" are of the surface (stated_roughness, stated_coat). Throws InputError naming the
+// field, what was found and what is allowed (sigma_s_prime, sigma_a 0 to 1e6, eta in [1, 3], mean_free_path > 0, g
+// above -1 and below 1, roughness in roughness_range; all finite).
 gpu::Material parse_material(std::string_view text);
 
 // What is known of the angles by which light scatters: g, their mean cosine, 0 where nothing is; where it is not the

@@ -20,13 +20,14 @@ std::vector<gpu::Optical> at_nodes(const Level& level, std::span<const BodyMater
   return coefficients(level, level.nodes, body_of, materials);
 }
 
-// Bodies within others have no surface to the air: as smooth and of the index as the outermost around them.
+// Bodies within others have no surface to the air: as smooth, of the index and coated as the outermost around them.
 std::vector<BodyMaterial> at_surfaces(std::span<const BodyMaterial> materials,
                                       const std::vector<std::uint32_t>& outermost) {
   std::vector<BodyMaterial> found(materials.begin(), materials.end());
   for (std::size_t i = 0; i < found.size(); ++i) {
     found[i].eta = materials[outermost[i]].eta;
     found[i].roughness = materials[outermost[i]].roughness;
+    found[i].coat = materials[outermost[i]].coat;
   }
   return found;
 }
@@ -98,6 +99,7 @@ BodyMaterial body_material(const std::string& text) {
   return {.text = text,
           .eta = material.eta,
           .roughness = stated_roughness(text).value_or(default_roughness),
+          .coat = stated_coat(text),
           .wants_depth = layered,
           .angles = angles_of(material),
           .at = [material, layered](std::span<const glm::vec3> points, std::span<const float> depths) {
@@ -129,7 +131,11 @@ void Engine::set_materials(std::span<const BodyMaterial> given) {
       levels[0], points_in_tets(levels[0]),
       [&](std::uint32_t i) { return levels[0].body_of_tet(i % levels[0].tet_count()); }, materials);
   std::vector<float> eta;
-  for (const BodyMaterial& material : materials) eta.push_back(material.eta);
+  std::vector<OpticalSurface> surfaces;
+  for (const BodyMaterial& material : materials) {
+    eta.push_back(material.eta);
+    surfaces.emplace_back(double{material.eta}, material.coat);
+  }
   for (std::uint32_t i = 0; i < levels.size(); ++i) {
     simulation.set_optical(i, at_nodes(levels[i], materials), eta,
                            i == 0 ? std::span(elsewhere) : std::span<const gpu::Optical>());
@@ -143,7 +149,7 @@ void Engine::set_materials(std::span<const BodyMaterial> given) {
   self.certainty = {};
   self.body_roughness.emplace(self.device, self.graph, materials);
   self.index_warning = index_warning(given, bodies, self.graph.outermost());
-  self.set_index(std::move(eta));
+  self.set_surfaces(std::move(surfaces));
 }
 
 }  // namespace quadgraph

@@ -16,6 +16,7 @@ struct BodyMaterial {
   std::string text{};  // as it was said
   float eta = default_eta;
   float roughness = default_roughness;  // GGX alpha
+  Coat coat{};
   bool wants_depth = false;
   ScatteringAngles angles{};
   // Coefficients at points, mm, in the shape at rest; depths: mm below the surface, empty unless they are wanted.

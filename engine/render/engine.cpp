@@ -39,12 +39,12 @@ const Sphere& Engine::bounds() const {
 
 void Engine::set_material(std::string_view text) {
   const gpu::Material material = parse_material(text);
-  set_material(material);
+  set_material(material, stated_coat(text));
   implementation_->material = text;
   implementation_->of_text = material;
 }
 
-void Engine::set_material(const gpu::Material& material) {
+void Engine::set_material(const gpu::Material& material, const Coat& coat) {
   const auto turn = implementation_->in_use.take();
   auto& self = *implementation_;
   check_material(material);
@@ -53,11 +53,11 @@ void Engine::set_material(const gpu::Material& material) {
   self.material = material_text(material);
   self.certainty = {};
   self.body_roughness.reset();
-  self.set_index({material.eta});
+  self.set_surfaces({{double{material.eta}, coat}});
 }
 
 void Engine::set_optical(std::uint32_t level, std::span<const gpu::Optical> optical, float eta,
-                         std::span<const gpu::Optical> elsewhere) {
+                         std::span<const gpu::Optical> elsewhere, const Coat& coat) {
   const auto turn = implementation_->in_use.take();
   auto& self = *implementation_;
   self.levels().set_optical(level, optical, eta, elsewhere);
@@ -66,10 +66,10 @@ void Engine::set_optical(std::uint32_t level, std::span<const gpu::Optical> opti
   self.material = "coefficients per node, eta=" + number_text(eta);
   self.certainty = {};
   self.body_roughness.reset();
-  self.set_index({eta});
+  self.set_surfaces({{double{eta}, coat}});
 }
 
-void Engine::set_optical(const OpticalGrid& grid) {
+void Engine::set_optical(const OpticalGrid& grid, const Coat& coat) {
   const auto turn = implementation_->in_use.take();
   auto& self = *implementation_;
   check_optical(grid.optical, grid.optical.size());
@@ -78,7 +78,7 @@ void Engine::set_optical(const OpticalGrid& grid) {
   self.material = "coefficients on a grid, eta=" + number_text(grid.eta);
   self.certainty = {};
   self.body_roughness.reset();
-  self.set_index({grid.eta});
+  self.set_surfaces({{double{grid.eta}, coat}});
 }
 
 void Engine::set_certainty(Certainty certainty) {

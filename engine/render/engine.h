@@ -115,7 +115,7 @@ class Engine {
 
   // Text as parse_material reads it, or a material. Throws InputError.
   void set_material(std::string_view text);
-  void set_material(const gpu::Material& material);
+  void set_material(const gpu::Material& material, const Coat& coat = {});
 
   // A material for each body of a file that names them, in its order. Throws InputError where they are not as many, or
   // of several indices of refraction.
@@ -123,11 +123,11 @@ class Engine {
 
   // Coefficients instead of a material, as Simulation::set_optical.
   void set_optical(std::uint32_t level, std::span<const gpu::Optical> optical, float eta,
-                   std::span<const gpu::Optical> elsewhere = {});
+                   std::span<const gpu::Optical> elsewhere = {}, const Coat& coat = {});
 
   // Coefficients on a grid instead of a material; shortest-path takes them, other methods those of nodes. Throws
   // InputError.
-  void set_optical(const OpticalGrid& grid);
+  void set_optical(const OpticalGrid& grid, const Coat& coat = {});
 
   // How well the present coefficients are known at the vertices of level 0, for views of it; another material drops it.
   // Throws InputError unless there is one number for each vertex, or none.

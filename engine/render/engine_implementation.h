@@ -68,13 +68,13 @@ struct Engine::Implementation {
   std::optional<BodyRoughness> body_roughness;  // of the materials of several bodies
   std::string index_warning;                    // the same, of the report
   std::vector<Light> lights;
-  std::vector<float> eta{1};             // of the material, or of those of all bodies
-  bool shadows_stale = false;            // they are not those of the present lights and shape
-  bool irradiance_stale = false;         // nor is q on the levels
-  bool irradiance_rough = false;         // q is that of a frame in motion
-  bool irradiance_given = false;         // q is not that of lights
-  std::optional<NormalMap> facets_said;  // by which light is to enter
-  bool facets_stale = true;              // faces do not lean by it yet
+  std::vector<OpticalSurface> surfaces{1};  // of the material, or of those of all bodies
+  bool shadows_stale = false;               // they are not those of the present lights and shape
+  bool irradiance_stale = false;            // nor is q on the levels
+  bool irradiance_rough = false;            // q is that of a frame in motion
+  bool irradiance_given = false;            // q is not that of lights
+  std::optional<NormalMap> facets_said;     // by which light is to enter
+  bool facets_stale = true;                 // faces do not lean by it yet
   SolveOptions options;
   std::optional<SolveOptions> again;  // what was asked for, where the last solve is one of those of a mean
   std::optional<SolveReport> report;
@@ -159,16 +159,19 @@ struct Engine::Implementation {
     irradiance_stale = irradiance_stale || !lights.empty();
   }
 
-  // Of the material. What enters the surface depends on the index of refraction alone.
-  void set_index(std::vector<float> found) {
-    if (found == eta) return;
-    eta = std::move(found);
+  // Of the material. What enters the surface depends on these alone.
+  void set_surfaces(std::vector<OpticalSurface> found) {
+    std::vector<Coat> coats;
+    for (const OpticalSurface& surface : found) coats.push_back(surface.coat);
+    if (simulation) simulation->set_coats(coats);
+    if (found == surfaces) return;
+    surfaces = std::move(found);
     stale();
   }
 
   // Shadow maps of the present lights.
   LightSet cast_shadows() {
-    images.set_eta(different_indices(eta));
+    images.set_surfaces(different_surfaces(surfaces));
     LightSet set(lights, bounds, &images);
     irradiance_passes.clear();
     if (const PassStats drawn = shadows.update(mesh, set); drawn.count > 0) irradiance_passes.push_back(drawn);
@@ -244,7 +247,7 @@ struct Engine::Implementation {
     if (shadows_stale) cast_shadows();
     SolveReport found;
     found.method = Method::shortest_path;
-    found.path = paths.solve(mesh, moved ? &motion.rest() : nullptr, shadows, eta[0], wanted.path);
+    found.path = paths.solve(mesh, moved ? &motion.rest() : nullptr, shadows, surfaces[0], wanted.path);
     return found;
   }
 
@@ -321,6 +324,15 @@ struct Engine::Implementation {
   float roughness(const RenderOptions& render) const {
     if (render.roughness) return *render.roughness;
     return body_roughness ? body_roughness->least() : stated_roughness(material).value_or(default_roughness);
+  }
+
+  // Of the roughest coat, by which environments are mirrored in all; 0 where there is none.
+  float coat_roughness() const {
+    float most = 0;
+    for (const OpticalSurface& surface : surfaces) {
+      if (surface.coat.share > 0) most = std::max(most, surface.coat.roughness);
+    }
+    return most;
   }
 
   // The picture's, or the file's own.

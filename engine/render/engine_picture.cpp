@@ -23,7 +23,7 @@ Radiance Engine::Implementation::draw_surface(const Camera& camera, const Render
     add_all(rasteriser.run(PathInput{.mesh = mesh,
                                      .field = paths.field(),
                                      .shadows = shadows,
-                                     .eta = eta[0],
+                                     .surface = surfaces[0],
                                      .roughness = roughness(render),
                                      .placed_roughness = there,
                                      .placed_normals = normals,
@@ -63,7 +63,7 @@ void Engine::Implementation::draw_picture(const View& from, const Camera& camera
                                           std::uint32_t frame) {
   legend.reset();
   const glm::vec2 blurred = mirrored(render);
-  images.set_roughness(blurred.x, blurred.y);
+  images.set_roughness(blurred.x, blurred.y, coat_roughness());
   radiance = draw_surface(camera, render, frame);
   if (render.ground) {
     if (!ground) ground.emplace(device);

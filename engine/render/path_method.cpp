@@ -97,7 +97,7 @@ PathMethod::Parts& PathMethod::parts() {
   return *parts_;
 }
 
-void PathMethod::light(const DisplayBuffers& mesh, const ShadowMaps& shadows, float eta) {
+void PathMethod::light(const DisplayBuffers& mesh, const ShadowMaps& shadows, const OpticalSurface& surface) {
   Parts& own = *parts_;
   const std::uint32_t stripes = Voxels::stripes({mesh.vertices, mesh.triangles, 0, mesh.triangle_count});
   const gpu::PathEnterPush push{.grid = own.voxels.grid(),
@@ -111,8 +111,8 @@ void PathMethod::light(const DisplayBuffers& mesh, const ShadowMaps& shadows, fl
                                 .triangle_count = mesh.triangle_count,
                                 .stripes = stripes,
                                 .light_count = shadows.light_count(),
-                                .eta = eta,
-                                .diffuse_transmittance = static_cast<float>(diffuse_transmittance(eta)),
+                                .surface = single_precision(surface),
+                                .diffuse_transmittance = static_cast<float>(diffuse_transmittance(surface)),
                                 .tools = tools()};
   run_pass(
       device_, "path light", mesh.triangles.size() + 36ull * mesh.triangle_count, passes_,
@@ -135,11 +135,11 @@ void PathMethod::make_body(const PathMesh& mesh, const device::Buffer* rest, con
 }
 
 PathReport PathMethod::solve(const DisplayBuffers& mesh, const device::Buffer* rest, const ShadowMaps& shadows,
-                             float eta, const PathOptions& options) {
+                             const OpticalSurface& surface, const PathOptions& options) {
   Parts& own = parts();
   passes_.clear();
   make_body({mesh.vertices, mesh.triangles, mesh.vertex_count, mesh.triangle_count}, rest, options);
-  light(mesh, shadows, eta);
+  light(mesh, shadows, surface);
   own.paths.solve(own.voxels.cells(), options.solver, passes_);
   own.field.run(own.voxels, own.paths, tools(), passes_);
   return {.options = options,

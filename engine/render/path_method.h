@@ -45,8 +45,8 @@ class PathMethod {
   // Voxels and costs of the mesh as it is now, if anything about them has changed since the last solve, light and
   // paths. `rest`: its vertices at rest, null where they are there. Throws InputError as CellCosts and check_options,
   // SolverError as PathRelaxation.
-  PathReport solve(const DisplayBuffers& mesh, const device::Buffer* rest, const ShadowMaps& shadows, float eta,
-                   const PathOptions& options);
+  PathReport solve(const DisplayBuffers& mesh, const device::Buffer* rest, const ShadowMaps& shadows,
+                   const OpticalSurface& surface, const PathOptions& options);
 
   // Results of the last solve.
   const std::vector<PassStats>& passes() const { return passes_; }
@@ -59,7 +59,7 @@ class PathMethod {
   gpu::PathTools tools() const { return {tools_.address(), tool_count_}; }
   Parts& parts();
   void make_body(const PathMesh& mesh, const device::Buffer* rest, const PathOptions& options);
-  void light(const DisplayBuffers& mesh, const ShadowMaps& shadows, float eta);
+  void light(const DisplayBuffers& mesh, const ShadowMaps& shadows, const OpticalSurface& surface);
 
   device::Device& device_;
   std::vector<Edit> edits_;

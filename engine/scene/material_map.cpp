@@ -80,22 +80,24 @@ std::string to_string(const MaterialMap& map) {
   return text;
 }
 
-std::optional<VolumeName> volume_name(std::string_view material) {
+std::optional<VolumeName> volume_name(std::string_view text) {
+  const std::string material = without_coat(text);
   const std::string small = lower(material);
   const std::size_t with_map = small.rfind(std::string(suffix) + ",map=");
   if (with_map != std::string::npos) {
     const std::size_t end = with_map + suffix.size();
-    return VolumeName{material.substr(0, end), parse_map(material.substr(end + 5))};
+    return VolumeName{material.substr(0, end), parse_map(material.substr(end + 5)), stated_coat(text)};
   }
-  if (small.ends_with(suffix)) return VolumeName{material};
+  if (small.ends_with(suffix)) return VolumeName{material, {}, stated_coat(text)};
   const std::size_t other = small.rfind(std::string(suffix) + ",");
   if (other == std::string::npos) return std::nullopt;
-  throw InputError("material: found '" + std::string(material.substr(other + suffix.size() + 1)) +
-                   "' behind the name of a volume, allowed is map=box, map=shell or map=volume, and what goes with it");
+  throw InputError(
+      "material: found '" + material.substr(other + suffix.size() + 1) +
+      "' behind the name of a volume, allowed is map=box, map=shell or map=volume, and what goes with it, and coat=");
 }
 
 std::string to_string(const VolumeName& name) {
-  return name.file.string() + (name.map ? ",map=" + to_string(*name.map) : "");
+  return with_coat(name.file.string() + (name.map ? ",map=" + to_string(*name.map) : ""), name.coat);
 }
 
 std::string with_map(std::string_view material, std::string_view map) {

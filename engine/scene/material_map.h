@@ -9,6 +9,7 @@
 
 #include "engine/base/names.h"
 #include "engine/base/range.h"
+#include "engine/optics/coat.h"
 
 namespace quadgraph {
 
@@ -56,10 +57,11 @@ std::string to_string(const MaterialMap& map);
 struct VolumeName {
   std::filesystem::path file;
   std::optional<MaterialMap> map{};  // none: it lies in the body as it is
+  Coat coat{};
 };
 
-// Of a material's text that names a volume, "wax.npz" or "wax.npz,map=shell,scale=2": .npz in any case; nothing for
-// other materials. Throws InputError for what stands behind the name.
+// Of a material's text that names a volume, "wax.npz" or "wax.npz,map=shell,scale=2", with a coat or none: .npz in any
+// case; nothing for other materials. Throws InputError for what stands behind the name.
 std::optional<VolumeName> volume_name(std::string_view material);
 
 std::string to_string(const VolumeName& name);

@@ -27,9 +27,11 @@ std::string material_help() {
          "the colour that a thick body shows, below 1, and a length in mm; or sigma_s=S,g=G in place of sigma_s_prime: "
          "scattering of mean cosine G, which g=G beside a sigma_s_prime or a name says, too; "
          "or NAME,key=value; "
-         "roughness=ALPHA of the surface; pattern=P,period=D,sharpness=K mixes in a second set, second_sigma_a and so "
+         "roughness=ALPHA of the surface; coat=water, lacquer or the share that a clear layer covers, of index "
+         "coat_eta "
+         "and coat_roughness; pattern=P,period=D,sharpness=K mixes in a second set, second_sigma_a and so "
          "on; "
-         "or a file .npz of coefficients on a grid (docs/scene.md)";
+         "or a file .npz of coefficients on a grid (docs/scene.md), with a coat or none";
 }
 
 std::string map_help() {

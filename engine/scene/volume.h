@@ -48,7 +48,7 @@ Volume read_volume(const std::filesystem::path& path);
 
 // A volume's coefficients on all levels and, for shortest-path, on its own grid; their certainty on the finest level.
 // Throws InputError.
-void set_material(Engine& engine, const Volume& volume);
+void set_material(Engine& engine, const Volume& volume, const Coat& coat = {});
 
 // A material, or coefficients on all levels from such a file, carried into the body as its name says
 // (engine/scene/material_map.h); returns what is to be said of that, nothing where none is carried. Throws InputError

@@ -31,6 +31,7 @@ BodyMaterial material_of_body(const QuadGraph& graph, std::uint32_t body, const 
   const glm::dvec3 centre = centre_of_body(graph.levels()[0], body);
   return {.text = text,
           .eta = volume->eta,
+          .coat = name->coat,
           .at = [volume, centre](std::span<const glm::vec3> points, std::span<const float>) {
             return volume->at(points, centre);
           }};
@@ -77,29 +78,30 @@ std::string set_material(Engine& engine, std::string_view text) {
   }
   const Volume volume = read_volume(name->file);
   if (!name->map) {
-    set_material(engine, volume);
+    set_material(engine, volume, name->coat);
     return {};
   }
   const MappedVolume made = mapped(volume, *name->map, engine.graph());
-  set_material(engine, made.volume);
+  set_material(engine, made.volume, name->coat);
   return report_text(*name->map, made.report);
 }
 
-void set_material(Engine& engine, const Volume& volume) {
+void set_material(Engine& engine, const Volume& volume, const Coat& coat) {
   const std::span<const Level> levels = engine.graph().levels();
   const RestBox box = rest_box(levels.empty() ? engine.graph().display().vertices : levels[0].vertices);
   const glm::dvec3 centre = 0.5 * (box.low + box.high);
   for (std::uint32_t i = 0; i < levels.size(); ++i) {
     const std::vector<gpu::Optical> elsewhere =
         i == 0 ? volume.at(points_in_tets(levels[i]), centre) : std::vector<gpu::Optical>{};
-    engine.set_optical(i, volume.at(levels[i].nodes, centre), volume.eta, elsewhere);
+    engine.set_optical(i, volume.at(levels[i].nodes, centre), volume.eta, elsewhere, coat);
   }
   const glm::uvec3 size(volume.cells[0], volume.cells[1], volume.cells[2]);
   engine.set_optical(OpticalGrid{.size = size,
                                  .optical = volume.optical,
                                  .spacing = glm::vec3(volume.spacing),
                                  .first = glm::vec3(volume.first(centre)),
-                                 .eta = volume.eta});
+                                 .eta = volume.eta},
+                     coat);
   if (!levels.empty()) engine.set_certainty(volume.certainty_at(levels[0].vertices, centre));
 }
 

@@ -18,22 +18,24 @@ double square_of_step(std::uint32_t step) {
   return root * root;
 }
 
-// Refraction::reflectance of that index.
-std::array<float, gpu::REFLECTANCE_VALUES> reflectances(double eta) {
+// Refraction::reflectance of that surface.
+std::array<float, gpu::REFLECTANCE_VALUES> reflectances(const OpticalSurface& surface) {
   std::array<float, gpu::REFLECTANCE_VALUES> found{};
-  constexpr std::uint32_t row = gpu::REFLECTANCE_STEPS + 1;
-  for (std::uint32_t k = 0; k < gpu::REFLECTANCE_VALUES; ++k) {
-    found[k] = static_cast<float>(rough_reflectance(square_of_step(k % row), square_of_step(k / row), eta));
+  constexpr std::uint32_t row = gpu::REFLECTANCE_ROW;
+  for (std::uint32_t k = 0; k < row * row; ++k) {
+    found[k] = static_cast<float>(rough_reflectance(square_of_step(k % row), square_of_step(k / row), surface));
+  }
+  for (std::uint32_t k = 0; k < row; ++k) {
+    found[row * row + k] = static_cast<float>(coat_reflectance(square_of_step(k), surface));
   }
   return found;
 }
 
-gpu::Refraction refraction(float eta, std::uint32_t entering, std::uint64_t reflectance) {
-  const double index = eta;
-  return {.eta = eta,
-          .transmitted = static_cast<float>(diffuse_transmittance(index)),
-          .kept = static_cast<float>(2 * fresnel_moment(1, index)),
-          .radiance_norm = static_cast<float>(radiance_norm(index)),
+gpu::Refraction refraction(const OpticalSurface& surface, std::uint32_t entering, std::uint64_t reflectance) {
+  return {.surface = single_precision(surface),
+          .transmitted = static_cast<float>(diffuse_transmittance(surface)),
+          .kept = static_cast<float>(2 * fresnel_moment(1, surface)),
+          .radiance_norm = static_cast<float>(radiance_norm(surface)),
           .entering = entering,
           .reflectance = reflectance};
 }
@@ -57,10 +59,10 @@ double BodyBoundaries::least_k11() const {
   return std::ranges::min(of_body, {}, &Boundary::k11).k11;
 }
 
-std::vector<float> different_indices(std::span<const float> eta) {
-  std::vector<float> different;
-  for (const float index : eta) {
-    if (std::ranges::find(different, index) == different.end()) different.push_back(index);
+std::vector<OpticalSurface> different_surfaces(std::span<const OpticalSurface> surfaces) {
+  std::vector<OpticalSurface> different;
+  for (const OpticalSurface& surface : surfaces) {
+    if (std::ranges::find(different, surface) == different.end()) different.push_back(surface);
   }
   return different;
 }
@@ -68,6 +70,7 @@ std::vector<float> different_indices(std::span<const float> eta) {
 Refractions::Refractions(device::Device& device, std::uint32_t bodies)
     : device_(device),
       eta_(bodies, 1.0f),
+      surfaces_(bodies),
       on_device_(device, bodies * sizeof(gpu::Refraction), device::Place::device, "material/refraction of bodies"),
       reflectances_(device, bodies * gpu::REFLECTANCE_VALUES * sizeof(float), device::Place::device,
                     "material/reflectance of bodies"),
@@ -78,17 +81,17 @@ Refractions::Refractions(device::Device& device, std::uint32_t bodies)
 }
 
 void Refractions::write() {
-  const std::vector<float> different = different_indices(eta_);
+  const std::vector<OpticalSurface> different = different_surfaces(surfaces_);
   std::vector<gpu::Refraction> kinds, bodies;
   std::vector<std::array<float, gpu::REFLECTANCE_VALUES>> tables;
-  for (const float index : different) {
+  for (const OpticalSurface& surface : different) {
     const auto number = static_cast<std::uint32_t>(kinds.size());
-    tables.push_back(reflectances(double{index}));
-    kinds.push_back(refraction(index, number, reflectances_.address() + number * sizeof(tables.front())));
+    tables.push_back(reflectances(surface));
+    kinds.push_back(refraction(surface, number, reflectances_.address() + number * sizeof(tables.front())));
   }
   device::write_bytes(device_, reflectances_, std::as_bytes(std::span(tables)));
-  for (const float index : eta_) {
-    bodies.push_back(*std::ranges::find(kinds, index, &gpu::Refraction::eta));
+  for (const OpticalSurface& surface : surfaces_) {
+    bodies.push_back(kinds[static_cast<std::size_t>(std::ranges::find(different, surface) - different.begin())]);
   }
   device::write_bytes(device_, on_device_, std::as_bytes(std::span(bodies)));
   boundaries_.clear();
@@ -104,6 +107,22 @@ bool Refractions::set(std::span<const float> eta) {
   if (wanted.size() == 1) wanted.assign(eta_.size(), eta[0]);
   if (wanted == eta_) return false;
   eta_ = std::move(wanted);
+  for (std::size_t i = 0; i < eta_.size(); ++i) surfaces_[i].eta = double{eta_[i]};
+  write();
+  return true;
+}
+
+bool Refractions::set_coats(std::span<const Coat> coats) {
+  if (coats.size() > 1 && coats.size() != eta_.size()) {
+    throw InputError("coats: " + std::to_string(coats.size()) + " found, one for all, or one for each of " +
+                     std::to_string(eta_.size()) + " bodies wanted");
+  }
+  std::vector<OpticalSurface> wanted = surfaces_;
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    wanted[i].coat = coats.empty() ? Coat{} : coats[coats.size() == 1 ? 0 : i];
+  }
+  if (wanted == surfaces_) return false;
+  surfaces_ = std::move(wanted);
   write();
   return true;
 }
@@ -124,11 +143,11 @@ const BodyBoundaries& Refractions::boundaries(Method method, Source source, Mode
   if (const auto known = boundaries_.find(key); known != boundaries_.end()) return known->second;
   const std::size_t first = first_of(method, source, model);
   BodyBoundaries found{.of_body = {}, .on_device = boundaries_on_device_.address() + first * sizeof(gpu::Boundary)};
-  for (const float index : eta_) {
-    const auto before = std::ranges::find(eta_, index) - eta_.begin();  // the first body of this index
+  for (const OpticalSurface& surface : surfaces_) {
+    const auto before = std::ranges::find(surfaces_, surface) - surfaces_.begin();  // the first body of this surface
     const bool known = static_cast<std::size_t>(before) < found.of_body.size();
     found.of_body.push_back(known ? found.of_body[static_cast<std::size_t>(before)]
-                                  : boundary_of(method, source, model, double{index}));
+                                  : boundary_of(method, source, model, surface));
     boundaries_on_host_[first + found.of_body.size() - 1] = single_precision(found.of_body.back());
   }
   device::write_bytes(device_, boundaries_on_device_, std::as_bytes(std::span(boundaries_on_host_)));

@@ -1,4 +1,4 @@
-// The smooth surface of each body of a file, by its index of refraction, as passes read it.
+// The smooth surface of each body of a file, by its index of refraction and its coat, as passes read it.
 #pragma once
 
 #include <cstdint>
@@ -36,13 +36,17 @@ class Refractions {
   // check_eta; then all stays as it was.
   bool set(std::span<const float> eta);
 
-  std::span<const float> eta() const { return eta_; }  // by body
+  // The same of coats; those of bodies that nothing is said of are none. Throws InputError on another number of them.
+  bool set_coats(std::span<const Coat> coats);
+
+  std::span<const float> eta() const { return eta_; }                     // by body
+  std::span<const OpticalSurface> surfaces() const { return surfaces_; }  // the same
   // gpu::Refraction by body; where it lies does not change.
   const device::Buffer& on_device() const { return on_device_; }
   // The words before the kinds of faces (shaders/shared/refraction.h).
   std::vector<std::uint32_t> head(std::uint32_t faces) const;
 
-  // boundary_of by body, found at first use; valid until the indices change.
+  // boundary_of by body, found at first use; valid until the surfaces change.
   const BodyBoundaries& boundaries(Method method, Source source, Model model);
 
  private:
@@ -51,8 +55,9 @@ class Refractions {
 
   device::Device& device_;
   std::vector<float> eta_;
+  std::vector<OpticalSurface> surfaces_;
   device::Buffer on_device_;
-  device::Buffer reflectances_;  // REFLECTANCE_VALUES for each index that differs from those before
+  device::Buffer reflectances_;  // REFLECTANCE_VALUES for each surface that differs from those before
   // By body, of each method, source and model, which keep their places: what a solve takes of memory does not hang on
   // the solves before it.
   std::vector<gpu::Boundary> boundaries_on_host_;
@@ -60,8 +65,8 @@ class Refractions {
   std::map<std::tuple<Method, Source, Model>, BodyBoundaries> boundaries_;
 };
 
-// The different ones among indices, each once, in the order in which they come first: the pictures of what enters of an
-// environment are in this order (gpu::Refraction::entering).
-std::vector<float> different_indices(std::span<const float> eta);
+// The different ones among surfaces, each once, in the order in which they come first: the pictures of what enters of
+// an environment are in this order (gpu::Refraction::entering).
+std::vector<OpticalSurface> different_surfaces(std::span<const OpticalSurface> surfaces);
 
 }  // namespace quadgraph

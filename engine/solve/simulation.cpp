@@ -68,9 +68,18 @@ void Simulation::set_etendue(std::span<const float> by_body) {
   if (self.correction) self.correction->forget();
 }
 
+void Simulation::set_coats(std::span<const Coat> coats) {
+  if (implementation_->refractions.set_coats(coats)) implementation_->disassemble();
+}
+
 void Simulation::set_edits(std::span<const Edit> edits) {
   implementation_->coefficients.set(edits);
   implementation_->disassemble();
+}
+
+std::span<const OpticalSurface> Simulation::surfaces() const {
+  implementation_->coefficients.check();
+  return implementation_->refractions.surfaces();
 }
 
 std::span<const float> Simulation::eta() const {

@@ -84,6 +84,10 @@ class Simulation {
   // is set, and after set_material. Where another it is set behind set_optical on all levels.
   void set_etendue(std::span<const float> by_body);
 
+  // What coats the surface of each body, one for all, or none; whatever is set besides leaves it. Throws InputError on
+  // another number of them.
+  void set_coats(std::span<const Coat> coats);
+
   // By which angles light scatters, of what set_optical has set on all levels.
   void set_angles(const ScatteringAngles& angles);
 
@@ -91,6 +95,8 @@ class Simulation {
   // later. Throws InputError naming the edit and as check_edit.
   void set_edits(std::span<const Edit> edits);
 
+  // The surfaces of what was set, by body; throws InputError as `eta`.
+  std::span<const OpticalSurface> surfaces() const;
   // Indices of refraction of what was set, by body. Throws InputError before that, or if a level of set_optical is
   // missing.
   std::span<const float> eta() const;

@@ -6,11 +6,12 @@
 namespace quadgraph {
 namespace {
 
-// How much indices differ from those before, by body, the most of any; 1 where there were none.
-double index_change(std::span<const float> before, std::span<const float> now) {
+// How much indices differ from those before, by body, the most of any; 1 where there were none, or another coat.
+double index_change(std::span<const OpticalSurface> before, std::span<const OpticalSurface> now) {
   double most = before.empty() ? 1 : 0;
   for (std::size_t i = 0; i < before.size(); ++i) {
-    most = std::max(most, std::abs(double{now[i]} - double{before[i]}) / double{now[i]});
+    const double change = std::abs(now[i].eta - before[i].eta) / now[i].eta;
+    most = std::max(most, now[i].coat == before[i].coat ? change : 1);
   }
   return most;
 }
@@ -60,7 +61,7 @@ CorrectedPatches Simulation::Implementation::measure_patches(const BodyBoundarie
 }
 
 double Simulation::Implementation::material_change(std::span<const gpu::Optical> now) const {
-  return std::max(extinction_change(corrected_optical, now), index_change(corrected_eta, refractions.eta()));
+  return std::max(extinction_change(corrected_optical, now), index_change(corrected_surfaces, refractions.surfaces()));
 }
 
 void Simulation::Implementation::forget_other_material() {
@@ -70,7 +71,7 @@ void Simulation::Implementation::forget_other_material() {
   another || goes_forward() || corrected_g != coefficients.angles().g ? correction->forget() : correction->edited();
   corrected_optical = std::move(now);
   corrected_g = coefficients.angles().g;
-  corrected_eta.assign(refractions.eta().begin(), refractions.eta().end());
+  corrected_surfaces.assign(refractions.surfaces().begin(), refractions.surfaces().end());
   optical_changed = false;
 }
 

@@ -47,24 +47,24 @@ struct Simulation::Implementation {
   Coefficients coefficients;
   Etendue etendue;
   InterReflection exchange;
-  std::optional<BodyTree> tree;                   // of level 0, made at first use
-  std::optional<GatherField> gather;              // the same
-  std::optional<Gather> gathers_now;              // of the last solution
-  std::optional<TransportCorrection> correction;  // made at first use
-  std::optional<CarriedCorrection> carried;       // the same
-  std::optional<Certifier> certifier;             // the same
-  bool certified = false;                         // the last solve, by it
-  std::optional<Perturbation> perturbation;       // the same
-  std::optional<LightError> light_error;          // the same
-  bool corrected = false;                         // the last solution is
-  device::Buffer elsewhere;                       // Optical at points_in_tets, of the last solution's medium error
-  std::vector<gpu::Optical> corrected_optical;    // at the surface, of the last correction
-  std::vector<float> corrected_eta;               // the same
-  glm::vec3 corrected_g{0};                       // the same
-  bool optical_changed = true;                    // since then
-  std::vector<PassStats> passes;                  // of the last solve
-  bool scaled = false;                            // the scale is that of the present q
-  std::optional<OperatorKey> solved;              // by the last solve
+  std::optional<BodyTree> tree;                    // of level 0, made at first use
+  std::optional<GatherField> gather;               // the same
+  std::optional<Gather> gathers_now;               // of the last solution
+  std::optional<TransportCorrection> correction;   // made at first use
+  std::optional<CarriedCorrection> carried;        // the same
+  std::optional<Certifier> certifier;              // the same
+  bool certified = false;                          // the last solve, by it
+  std::optional<Perturbation> perturbation;        // the same
+  std::optional<LightError> light_error;           // the same
+  bool corrected = false;                          // the last solution is
+  device::Buffer elsewhere;                        // Optical at points_in_tets, of the last solution's medium error
+  std::vector<gpu::Optical> corrected_optical;     // at the surface, of the last correction
+  std::vector<OpticalSurface> corrected_surfaces;  // the same
+  glm::vec3 corrected_g{0};                        // the same
+  bool optical_changed = true;                     // since then
+  std::vector<PassStats> passes;                   // of the last solve
+  bool scaled = false;                             // the scale is that of the present q
+  std::optional<OperatorKey> solved;               // by the last solve
   Source solved_source = Source::buried;
   std::map<Model, std::vector<Resolution>> resolution;  // per level, of the present material and shape
   SolverChoice quicker;

@@ -26,6 +26,14 @@ double one_index(std::span<const float> eta, const std::vector<std::string>& bod
   return static_cast<double>(eta[0]);
 }
 
+void check_bare(std::span<const OpticalSurface> surfaces) {
+  for (const OpticalSurface& surface : surfaces) {
+    if (surface.coat.share == 0) continue;
+    throw InputError("derivatives: coat=" + number_text(surface.coat.share) +
+                     " found, allowed is a bare surface: leave coat= out of the material");
+  }
+}
+
 void check_within(const Simulation& simulation) {
   if (!simulation.etendue().bends()) return;
   throw InputError(
@@ -57,6 +65,7 @@ class BoundModel {
     for (const LevelBeam& beam : beams_) lights.push_back({beam.way, beam.quarters});
     check_within(simulation);
     options.eta = one_index(simulation.eta(), engine.graph().bodies());
+    check_bare(simulation.surfaces());
     options.check = heed_signals;
     const py::gil_scoped_release release;
     model_.emplace(level_, std::move(at), std::move(lights), std::move(samples), options);

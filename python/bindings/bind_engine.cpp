@@ -192,17 +192,17 @@ void bind_scene_setters(py::class_<Engine>& bound) {
       .def(
           "set_material", [](Engine& engine, std::string_view text) { return set_material(engine, text); },
           py::arg("text"),
-          "As --material reads it (docs/scene.md); returns what is to be said of the map that carried a volume into "
-          "the body, '' without one. Raises InputError, FormatError.")
+          "As --material reads it; returns what is said of a volume's map, or ''. Raises InputError, FormatError.")
       .def(
           "set_materials",
           [](Engine& engine, const std::map<std::string, std::string>& materials, const std::string& others) {
             set_materials(engine, others, materials);
           },
           py::arg("materials"), py::arg("others"),
-          "Texts as set_material takes them by the names of bodies, and that of those that are not named. Raises "
-          "InputError, also for a body that the file does not have.")
-      .def("set_material", py::overload_cast<const gpu::Material&>(&Engine::set_material), py::arg("material"))
+          "Texts as set_material takes them by the names of bodies, that of the others. Raises InputError.")
+      .def(
+          "set_material", [](Engine& engine, const gpu::Material& material) { engine.set_material(material); },
+          py::arg("material"))
       .def("set_lights", &set_lights, py::arg("lights"),
            "Texts as --light takes them (engine/render/light/lights.h); replaces all lights.")
       .def(

@@ -37,8 +37,9 @@ void bind_materials(py::module_& module) {
       },
       py::arg("material"), py::arg("points"), py::arg("depths"),
       "sigma_s_prime and sigma_a, (n, 3) in 1/mm, at (n, 3) mm, (n,) mm below the surface.");
-  module.def("fresnel_transmittance", &fresnel_transmittance, py::arg("cos_i"), py::arg("eta"),
-             "Unpolarised transmittance from outside at incidence cosine cos_i.");
+  module.def(
+      "fresnel_transmittance", [](double cos_i, double eta) { return fresnel_transmittance(cos_i, eta); },
+      py::arg("cos_i"), py::arg("eta"), "Unpolarised transmittance from outside at incidence cosine cos_i.");
   module.def("internal_diffuse_reflectance", &internal_diffuse_reflectance, py::arg("eta"), "The published F_dr.");
   module.def("mismatch", &mismatch, py::arg("eta"), "A = (1 + F_dr) / (1 - F_dr).");
 }

@@ -211,8 +211,9 @@ void bind_reference(py::module_& module) {
       "precision.");
   module.def("boundary", &boundary_dict, py::arg("method"), py::arg("source"), py::arg("model"), py::arg("eta"),
              "k11, k12, k22, source, reflected (engine/optics/boundary.h).");
-  module.def("fresnel_moment", &fresnel_moment, py::arg("n"), py::arg("eta"),
-             "R_n: integral of the internal reflectance times mu^n over the inside cosine.");
+  module.def(
+      "fresnel_moment", [](int n, double eta) { return fresnel_moment(n, eta); }, py::arg("n"), py::arg("eta"),
+      "R_n: integral of the internal reflectance times mu^n over the inside cosine.");
 }
 
 }  // namespace quadgraph::python

@@ -48,6 +48,11 @@ std::string material_json(const std::string& text) {
     json["sharpness"] = real_json(material.sharpness);
   }
   if (const auto roughness = stated_roughness(text)) json["roughness"] = real_json(*roughness);
+  if (const Coat coat = stated_coat(text); coat.share > 0) {
+    json["coat"] = real_json(coat.share);
+    json["coat_eta"] = real_json(coat.eta);
+    json["coat_roughness"] = real_json(coat.roughness);
+  }
   return json.dump();
 }
 

@@ -68,14 +68,14 @@ bool is_clear(uint face) {
   return min(sigma.x, min(sigma.y, sigma.z)) * scene.reach < CLEAR_DEPTH;
 }
 
-// Light that leaves a surface of that roughness: through more facets where the body is clear, since there they differ.
-// What a facet shows must not decide, or the mean of all would be another one. start: of their sequence of numbers.
-Leaving through_facets(uint face, vec3 l, vec3 v, vec3 normal, float roughness, uint start) {
-  uint number = push.facets * push.frame;
-  Leaving sum = leaving(face, l, v, normal, scene.scale, Facets(roughness, start, number, 0u));
-  if (roughness == 0.0 || push.facets == 1u || !is_clear(face)) return sum;
+// Light that leaves a surface: through more facets where the body is clear, since there they differ.
+// What a facet shows must not decide, or the mean of all would be another one.
+Leaving through_facets(uint face, vec3 l, vec3 v, vec3 normal, Facets facets) {
+  Leaving sum = leaving(face, l, v, normal, scene.scale, facets);
+  if (!is_rough(facets) || push.facets == 1u || !is_clear(face)) return sum;
   for (uint k = 1u; k < push.facets; ++k) {
-    Leaving one = leaving(face, l, v, normal, scene.scale, Facets(roughness, start, number + k, 0u));
+    ++facets.number;
+    Leaving one = leaving(face, l, v, normal, scene.scale, facets);
     sum.radiance += one.radiance;
     sum.seen += one.seen;
     sum.through += one.through;
@@ -100,19 +100,23 @@ uint sample_of_block(uint index) {
 struct Seen {
   uint face;  // outside face of level 0
   float share, roughness;
+  float lets_out;  // as of Facets: of coats, whose sides reflect by different facets
   vec3 position, normal;  // mm; unit
   vec3 specular;          // times its share
 };
 
 // The face that sample `first` shows; what is taken leaves `waiting`.
 Seen face_seen(Pixel pixel, uvec4 seen, uint first, inout uint waiting) {
-  Seen all = Seen(scene.triangle_face.at[seen[first] - 1u], 0.0, 0.0, vec3(0), vec3(0), vec3(0));
+  Seen all = Seen(scene.triangle_face.at[seen[first] - 1u], 0.0, 0.0, -1.0, vec3(0), vec3(0), vec3(0));
   for (uint k = first; k < 4u; ++k) {
     if ((waiting >> k & 1u) == 0u || scene.triangle_face.at[seen[k] - 1u] != all.face) continue;
     uint samples = alike(seen, k);
     waiting &= ~samples;
     Spot spot = spot_of(pixel, seen[k] - 1u, samples);
-    if (all.share == 0.0) all.roughness = roughness;
+    if (all.share == 0.0) {
+      all.roughness = roughness_of_leaving(roughness, surface);
+      all.lets_out = surface.coat == 0.0 ? -1.0 : 1.0 - evenly;
+    }
     all.share += spot.share;
     all.position += spot.share * spot.position;
     all.normal += spot.share * spot.normal;
@@ -141,7 +145,8 @@ void main() {
     vec3 l = coordinates_in(here.face, here.position);
     float rough = push.transmission < 0.0 ? here.roughness : push.transmission;
     uint start = hash(4u * pixel.index + k_first);
-    Leaving light = through_facets(here.face, l, v, here.normal, rough, start);
+    Facets facets = Facets(rough, start, push.facets * push.frame, 0u, here.lets_out);
+    Leaving light = through_facets(here.face, l, v, here.normal, facets);
     scattered += here.share * light.radiance;
     specular += here.specular;
     seen += here.share * light.seen;
@@ -156,7 +161,7 @@ void main() {
     if (!compared) continue;
     Opticals middle = BODY.optical;
     BODY.optical = scene.elsewhere[sample_of_block(pixel.index)];
-    Leaving other = through_facets(here.face, l, v, here.normal, rough, start);
+    Leaving other = through_facets(here.face, l, v, here.normal, facets);
     BODY.optical = middle;
     doubt.medium += here.share * summed(other.radiance - light.radiance);
   }

@@ -8,7 +8,8 @@
 #include "display/specular.glsl"
 #include "display/shading_normal.glsl"
 
-// Part of a display triangle. `roughness`, `eta` and `evenly` become those of the last that was made.
+// Part of a display triangle. `roughness`, `surface`, `evenly` and `coat_evenly` become those of the last that was
+// made.
 struct Spot {
   uvec3 vertices;  // of the display mesh
   vec3 l;          // barycentric coordinates of its middle in the triangle
@@ -129,10 +130,11 @@ Spot spot_of(Pixel pixel, uint triangle, uint samples) {
   vec3 v = towards_eye(SCENE.eye, spot.position);
   spot.normal = seen_normal(n, across, v);
   Refraction body = refraction_behind(SCENE.face_kinds, SCENE.face.at[at.x]);
-  eta = body.eta;
+  surface = body.surface;
   float cosine = dot(spot.normal, v);
   evenly = rough_reflectance(body, cosine, roughness);
-  spot.even_transmittance = fresnel_transmittance(clamp(cosine, 0.0, 1.0), eta) / body.radiance_norm;
+  coat_evenly = coat_reflectance(body, cosine);
+  spot.even_transmittance = fresnel_transmittance(clamp(cosine, 0.0, 1.0), surface) / body.radiance_norm;
   float sky = dot(spot.l, vec3(SCENE.sky.at[SCENE.face.at[at.x]], SCENE.sky.at[SCENE.face.at[at.y]],
                                SCENE.sky.at[SCENE.face.at[at.z]]));
   spot.specular = specular_radiance(spot.position, spot.normal, v, sky);

@@ -38,7 +38,7 @@ bool last_cut(PathTools tools, vec3 end, out vec3 point, out vec3 outward) {
 // what lay before it has been cut away: then the cut face is what is seen, and it lies on the same ray.
 void main() {
   roughness = SCENE.roughness;
-  eta = SCENE.eta;
+  surface = SCENE.surface;
   PathField field = push.field.at[0];
   if (field.tools.count > 0u && cut_away(field.tools, position)) discard;
   if (has_roughness_map()) place_roughness(rest, dFdx(rest), dFdy(rest));
@@ -57,7 +57,9 @@ void main() {
   if (dot(n, v) < 0.0 && !gl_FrontFacing) mesh_normal = -mesh_normal;
   if (dot(n, v) < 0.0) n = gl_FrontFacing ? normalize(n - 1.001 * dot(n, v) * v) : -n;
   n = seen_normal(n, across, v);
-  evenly = fresnel_reflectance(clamp(dot(n, v), 0.0, 1.0), eta);
+  float cosine = clamp(dot(n, v), 0.0, 1.0);
+  evenly = fresnel_reflectance(cosine, surface);
+  coat_evenly = surface.coat * fresnel_reflectance(cosine, surface.coat_eta);
   float share = (1.0 - evenly) / SCENE.radiance_norm;
   scattered_coverage = vec4(share * path_exitance(field, at), 1.0);
   specular = vec4(specular_radiance(at, n, v, 1.0), 1.0);

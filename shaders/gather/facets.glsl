@@ -10,9 +10,11 @@ struct Facets {
   uint start;   // of the sequence of numbers, by pixel
   uint number;  // in the sequence
   uint drawn;   // so far
+  // What the surface that a view ray starts at lets out, where facets say its directions alone; below 0: they say both.
+  float lets_out;
 };
 
-const Facets SMOOTH = Facets(0.0, 0u, 0u, 0u);
+const Facets SMOOTH = Facets(0.0, 0u, 0u, 0u, -1.0);
 
 bool is_rough(Facets facets) {
   return facets.alpha > 0.0;

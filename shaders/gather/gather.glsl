@@ -54,7 +54,7 @@ vec3 smooth_normal(uint face, vec3 l) {
 struct Met {
   vec3 normal;   // unit, of the smooth surface, or of a facet
   float cosine;  // of the ray with it, at least 0
-  float eta;     // of the body
+  OpticalSurface surface;
 };
 
 // Barycentric coordinates of a face's corners at a point of the face.
@@ -67,15 +67,15 @@ vec3 coordinates_on(uvec3 ids, TetPoint at) {
 Met met_from_inside(uint face, TetPoint at, vec3 direction, inout Facets facets) {
   vec3 n = smooth_normal(face, coordinates_on(BODY.faces.at[face], at)), towards, local;
   if (is_rough(facets)) n = -facet_seen(facets, -n, -direction, towards, local);
-  return Met(n, max(dot(direction, n), 0.0), eta_behind(BODY.face_kinds, face));
+  return Met(n, max(dot(direction, n), 0.0), surface_of(BODY.face_kinds, face));
 }
 
 // At a point of a face of unit normal `flat_normal`.
 Escape escape_here(vec3 share, uint face, TetPoint at, vec3 direction, Met met, vec3 flat_normal) {
   uvec3 ids = BODY.faces.at[face];
   vec3 point = corners_of(ids) * coordinates_on(ids, at);
-  float cos_o = sqrt(max(1.0 - met.eta * met.eta * (1.0 - met.cosine * met.cosine), 0.0));
-  vec3 outside = normalize(met.eta * (direction - met.cosine * met.normal) + cos_o * met.normal);
+  float cos_o = sqrt(max(1.0 - met.surface.eta * met.surface.eta * (1.0 - met.cosine * met.cosine), 0.0));
+  vec3 outside = normalize(met.surface.eta * (direction - met.cosine * met.normal) + cos_o * met.normal);
   return Escape(share, face, point, outward_of(flat_normal, outside));
 }
 
@@ -182,7 +182,7 @@ Gathered gather(TetPoint at, vec3 direction, inout Facets facets) {
     vec3 n = outward_normal(face);
     if (is_open(BODY.face_kinds, face)) {
       Met met = met_from_inside(face, at, direction, facets);
-      float reflected = internal_reflectance(met.cosine, met.eta);
+      float reflected = internal_reflectance(met.cosine, met.surface);
       vec3 through = left * (1.0 - reflected);
       sum.seen += through;
       if (largest(through) > largest(sum.second.share)) {

@@ -41,7 +41,7 @@ void main() {
   vec3 normal = normalize(doubled);
   vec3 tangent = face_tangent(face, normal, corners[1] - corners[0]);
   TetPoint centre = start_on_face(BODY.face_tets.at[face], ids, vec3(1.0 / 3.0));
-  float eta = eta_behind(BODY.face_kinds, face);
+  OpticalSurface surface = surface_of(BODY.face_kinds, face);
   vec3 exitance = vec3(0);
   for (uint node = 0u; node < LAMBERTIAN_NODES; ++node) {
     vec3 incoming = lambertian_incoming(2u * node + (node >> 1u), normal, tangent);
@@ -50,8 +50,8 @@ void main() {
       exitance += LAMBERTIAN_W[node] * leaving(face, vec3(1.0 / 3.0), -incoming, normal, push.scale, facets).radiance;
       continue;
     }
-    vec3 radiance = gather(centre, refracted(incoming, normal, eta), facets).radiance / (eta * eta);
-    exitance += LAMBERTIAN_W[node] * fresnel_transmittance(sqrt(LAMBERTIAN_U[node]), eta) * radiance;
+    vec3 radiance = gather(centre, refracted(incoming, normal, surface.eta), facets).radiance;
+    exitance += LAMBERTIAN_W[node] * fresnel_transmittance(sqrt(LAMBERTIAN_U[node]), surface) * radiance / (surface.eta * surface.eta);
   }
   push.exitance.at[face] = PI * exitance;
 }

@@ -39,12 +39,15 @@ vec3 scaled(vec3 radiance, uvec3 ids, vec3 l, GatherScales scale, float radiance
 }
 
 // Share of the light inside that a surface of normal `n` lets out along `outward`; n: becomes that of a facet where the
-// surface is rough.
-float let_out(inout Facets facets, vec3 outward, Refraction body, inout vec3 n) {
-  if (!is_rough(facets) || body.eta == 1.0) return fresnel_transmittance(clamp(dot(outward, n), 0.0, 1.0), body.eta);
+// surface is rough. starts: whether the view ray starts there.
+float let_out(inout Facets facets, vec3 outward, Refraction body, bool starts, inout vec3 n) {
+  if (!is_rough(facets) || !reflects(body.surface)) {
+    return fresnel_transmittance(clamp(dot(outward, n), 0.0, 1.0), body.surface);
+  }
   vec3 towards, local;
   n = facet_seen(facets, n, outward, towards, local);
-  float reflected = fresnel_reflectance(clamp(dot(towards, local), 0.0, 1.0), body.eta);
+  if (starts && facets.lets_out >= 0.0) return facets.lets_out;
+  float reflected = fresnel_reflectance(clamp(dot(towards, local), 0.0, 1.0), body.surface);
   return 1.0 - reflected * gone_for_good(towards, local, facets.alpha);
 }
 
@@ -62,12 +65,12 @@ Leaving leaving(uint face, vec3 l, vec3 outward, vec3 n, GatherScales scale, Fac
     vec3 face_normal = doubled / max(length(doubled), 1e-30);
     if (part > 0u) n = smooth_normal(face, l);
     Refraction body = refraction_behind(BODY.face_kinds, face);
-    float through = let_out(facets, outward, body, n);
+    float through = let_out(facets, outward, body, part == 0u, n);
     if (part == 0u) sum.through = through;
     share *= through;
     TetPoint at = start_on_face(BODY.face_tets.at[face], ids, l);
-    Gathered inside = gather(at, view_ray(outward, n, face_normal, body.eta), facets);
-    vec3 radiance = inside.radiance / (body.eta * body.eta);
+    Gathered inside = gather(at, view_ray(outward, n, face_normal, body.surface.eta), facets);
+    vec3 radiance = inside.radiance / (body.surface.eta * body.surface.eta);
     sum.radiance += share * (uvec2(scale) == uvec2(0) ? radiance : scaled(radiance, ids, l, scale, body.radiance_norm));
     sum.seen += share * (inside.seen - inside.most.share - inside.second.share);
     inside.most.share *= share;

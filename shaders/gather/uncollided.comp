@@ -170,7 +170,7 @@ vec3 fluence_below(Lambertian light, vec3 tau) {
 }
 
 Lambertian bundle(uint kind, uint face) {
-  Lambertian light = lambertian(eta_behind(BODY.face_kinds, face));
+  Lambertian light = lambertian(surface_of(BODY.face_kinds, face));
   return kind == BEAM_MEAN ? Lambertian(vec4(0.25), vec4(dot(light.share, light.cosine))) : light;
 }
 

@@ -17,11 +17,11 @@ struct Lamp {
   LightShape shape;
   uint channel;
   float width;  // of a sample of the surface, mm
-  float eta;    // of the body behind it
+  OpticalSurface surface;
   Leaning leaning;
 };
 
-// What of a light in one place would enter at one point if nothing hid it, over its power: cos * E * F_t(cos, eta),
+// What of a light in one place would enter at one point if nothing hid it, over its power: cos * E * F_t(cos),
 // by the facets.
 float share_from(Lamp lamp, vec3 position, vec3 normal) {
   Incident incident = incident_light(lamp.light, lamp.shape, position);
@@ -31,7 +31,7 @@ float share_from(Lamp lamp, vec3 position, vec3 normal) {
     float width = lamp.width / distance(lamp.light.towards_or_at, position);
     incident.share *= projected(lamp.shape, -incident.direction, width)[lamp.channel];
   }
-  return let_in_by_facets(lamp.leaning, incident.direction, cos_i, lamp.eta) * incident.share;
+  return let_in_by_facets(lamp.leaning, incident.direction, cos_i, lamp.surface) * incident.share;
 }
 
 // Share from a patch, the mean over its parts.

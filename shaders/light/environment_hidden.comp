@@ -37,12 +37,12 @@ Place place_of(uint face) {
 vec3 hidden_from(uint face, LightShape shape) {
   Place own = place_of(face);
   uvec2 row = push.rows.at[face];
-  float eta = eta_behind(push.face_kinds, face);
+  OpticalSurface surface = surface_of(push.face_kinds, face);
   vec3 sum = vec3(0);
   for (uint k = row.x; k < row.y; ++k) {
     vec3 way = normalize(place_of(push.entries.at[k]).centre - own.centre);
     float cosine = clamp(dot(way, own.normal), 0.0, 1.0);
-    sum += fresnel_transmittance(cosine, eta) * environment_at(shape, ENVIRONMENT_RAYS, way);
+    sum += fresnel_transmittance(cosine, surface) * environment_at(shape, ENVIRONMENT_RAYS, way);
   }
   return 3.14159265 / push.rays * sum;
 }

@@ -129,7 +129,7 @@ void main() {
       beam += BEAM_FACE * push.face_count;
       continue;
     }
-    Lamp lamp = Lamp(light, no_shape(), 0u, 0.0, body.eta, leaning);
+    Lamp lamp = Lamp(light, no_shape(), 0u, 0.0, body.surface, leaning);
     if (SHAPED) {
       lamp.shape = push.shapes.at[i];
       lamp.width = sqrt(0.5 * length(cross(ab, ac))) / float(push.subdivision);

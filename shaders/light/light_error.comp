@@ -46,7 +46,7 @@ struct Face {
   mat3 corners;
   vec3 normal;
   float width;  // of a sample of it, mm
-  float eta;    // of the body behind it
+  OpticalSurface surface;
   Leaning leaning;
 };
 
@@ -57,7 +57,7 @@ Face face_of(uint number) {
   float twice = length(doubled);
   vec3 normal = doubled / max(twice, 1e-30);
   return Face(number, mat3(a, b, c), normal, sqrt(0.5 * twice / float(FACE_QUARTERS)),
-              eta_behind(push.face_kinds, number), leaning_of(push.face_kinds, number, normal, b - a, c - a));
+              surface_of(push.face_kinds, number), leaning_of(push.face_kinds, number, normal, b - a, c - a));
 }
 
 bool is_hidden(uint face, vec3 point, vec3 towards, float reach) {
@@ -75,7 +75,7 @@ vec3 unhidden(Lamp lamp, vec3 point, vec3 normal) {
 
 // Number i of the lights, which may be several records; then i is the last of these.
 Lamp lamp_of(inout uint i, Face face) {
-  Lamp lamp = Lamp(push.lights.at[i], no_shape(), 0u, face.width, face.eta, face.leaning);
+  Lamp lamp = Lamp(push.lights.at[i], no_shape(), 0u, face.width, face.surface, face.leaning);
   if (!SHAPED) return lamp;
   lamp.shape = push.shapes.at[i];
   while (push.shapes.at[i].more_follow == 1u) ++i;
@@ -100,7 +100,7 @@ void place_on(Beam rectangle, uint k, inout Lamp lamp, inout uint state) {
 // What is wrong with the maps at a point: of one light, drawn by what it brings, what is hidden of all. Rectangles, which
 // have maps of some of their places alone, come with all their light. k: number of the point in its sample.
 vec3 unlike_maps(Face face, vec3 point, uint k, inout uint state) {
-  Lamp drawn = Lamp(push.lights.at[0], no_shape(), 0u, 0.0, face.eta, face.leaning);
+  Lamp drawn = Lamp(push.lights.at[0], no_shape(), 0u, 0.0, face.surface, face.leaning);
   vec3 light = vec3(0);
   float all = 0.0, chosen = 1.0;
   uint beam = 0u;
@@ -171,7 +171,7 @@ vec3 noise_of(Beam beam, Face face) {
   for (uint ray = 0u; ray < push.rays; ++ray) {
     uint number = push.rays * face.number + ray, state = hash(face.number ^ hash(ray));
     vec3 along = face.corners[1] - face.corners[0];
-    SkyRay drawn = drawn_from_sky(beam, number, face.normal, face.leaning, along, face.eta, state);
+    SkyRay drawn = drawn_from_sky(beam, number, face.normal, face.leaning, along, face.surface, state);
     if (drawn.let_in == vec3(0)) continue;
     vec3 point = face.corners * spread_over_face(number);
     if (push.sky.at[face.number] < 1.0 && is_hidden(face.number, point, drawn.towards, FAR)) continue;

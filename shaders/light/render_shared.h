@@ -76,12 +76,12 @@ const uint DOUBT_STRIDE = 2u;
 struct SurfaceScene {
   mat4 clip_from_offset;  // of what is `origin` (mm) less than a place: engine/render/display/camera.h
   vec3 origin;
-  vec4 eye;             // shared/eye.h
-  float reach;          // mm, more than the body is wide
-  float eta;            // surface_path.frag alone, as is the next: of the one material of what has no levels
-  float radiance_norm;  // as of Refraction
-  float roughness;      // GGX alpha
-  vec2 mirrored;        // GGX alpha by which ENVIRONMENT_REFLECTED and ENVIRONMENT_REFLECTED_PLACED are blurred
+  vec4 eye;                // shared/eye.h
+  float reach;             // mm, more than the body is wide
+  OpticalSurface surface;  // surface_path.frag alone, as is the next: of the one material of what has no levels
+  float radiance_norm;     // as of Refraction
+  float roughness;         // GGX alpha
+  vec2 mirrored;           // GGX alpha by which ENVIRONMENT_REFLECTED and ENVIRONMENT_REFLECTED_PLACED are blurred
   uint light_count;
   QG_REF(Vec3s) vertices;     // display mesh, mm
   QG_REF(Vec3s) normals;      // unit

@@ -1,6 +1,8 @@
 #ifndef QUADGRAPH_FRESNEL_GLSL
 #define QUADGRAPH_FRESNEL_GLSL
 
+#include "shared/optical_surface.h"
+
 // Unpolarised reflectance of a smooth boundary from outside at incidence cosine `cos_i` in [0, 1]; eta = inside over
 // outside >= 1. Exact, as engine/optics/fresnel.h.
 float fresnel_reflectance(float cos_i, float eta) {
@@ -12,14 +14,59 @@ float fresnel_reflectance(float cos_i, float eta) {
   return 0.5 * (a * a + b * b) / (c * c);
 }
 
-float fresnel_transmittance(float cos_i, float eta) {
-  return 1.0 - fresnel_reflectance(cos_i, eta);
-}
-
 // From inside at cosine `cosine`: 1 under total reflection.
 float internal_reflectance(float cosine, float eta) {
   float sin_o_squared = eta * eta * (1.0 - cosine * cosine);
   return sin_o_squared >= 1.0 ? 1.0 : fresnel_reflectance(sqrt(1.0 - max(sin_o_squared, 0.0)), eta);
+}
+
+// Reflectances of both polarisations where light goes from an index of refraction into another, by the cosines there.
+vec2 polarised_reflectances(float from, float cos_from, float into, float cos_into) {
+  float parallel = (into * cos_from - from * cos_into) / max(into * cos_from + from * cos_into, 1e-20);
+  float across = (from * cos_from - into * cos_into) / max(from * cos_from + into * cos_into, 1e-20);
+  return vec2(parallel * parallel, across * across);
+}
+
+// Of a body under a coat, from outside, with all that goes to and fro in the coat.
+float coated_reflectance(float cos_i, OpticalSurface surface) {
+  float sine2 = 1.0 - cos_i * cos_i;
+  float cos_coat = sqrt(max(0.0, 1.0 - sine2 / (surface.coat_eta * surface.coat_eta)));
+  float cos_body = sqrt(max(0.0, 1.0 - sine2 / (surface.eta * surface.eta)));
+  vec2 above = polarised_reflectances(1.0, cos_i, surface.coat_eta, cos_coat);
+  vec2 below = polarised_reflectances(surface.coat_eta, cos_coat, surface.eta, cos_body);
+  vec2 through = (1.0 - above) * (1.0 - below) / max(1.0 - above * below, vec2(1e-20));
+  return 1.0 - 0.5 * (through.x + through.y);
+}
+
+// Whether it mirrors anything.
+bool reflects(OpticalSurface surface) {
+  return surface.eta != 1.0 || surface.coat != 0.0;
+}
+
+// GGX alpha by which a surface of that roughness scatters what leaves it: below a coat of nearly its index facets bend
+// light little, and the upper side of the coat by its own. Variances of slopes times how far they turn light, added.
+float roughness_of_leaving(float alpha, OpticalSurface surface) {
+  if (surface.coat == 0.0 || alpha == 0.0) return alpha;
+  float turned = max(surface.eta - 1.0, 0.05);
+  float below = alpha * (surface.eta - surface.coat_eta) / turned;
+  float above = surface.coat_roughness * (surface.coat_eta - 1.0) / turned;
+  return min(sqrt(mix(alpha * alpha, below * below + above * above, surface.coat)), 1.0);
+}
+
+// As a surface is, coated in parts.
+float fresnel_reflectance(float cos_i, OpticalSurface surface) {
+  float bare = fresnel_reflectance(cos_i, surface.eta);
+  return surface.coat == 0.0 ? bare : mix(bare, coated_reflectance(cos_i, surface), surface.coat);
+}
+
+float fresnel_transmittance(float cos_i, OpticalSurface surface) {
+  return 1.0 - fresnel_reflectance(cos_i, surface);
+}
+
+// The same from inside: no coat lets out what the bare surface mirrors wholly.
+float internal_reflectance(float cosine, OpticalSurface surface) {
+  float sin_o_squared = surface.eta * surface.eta * (1.0 - cosine * cosine);
+  return sin_o_squared >= 1.0 ? 1.0 : fresnel_reflectance(sqrt(1.0 - max(sin_o_squared, 0.0)), surface);
 }
 
 #endif

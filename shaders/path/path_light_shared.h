@@ -5,6 +5,7 @@
 
 #include "light/render_shared.h"
 #include "path/path_shared.h"
+#include "shared/optical_surface.h"
 
 #ifdef __cplusplus
 namespace quadgraph::gpu {
@@ -24,7 +25,7 @@ struct PathEnterPush {
   uint triangle_count;
   uint stripes;  // invocations per triangle and axis
   uint light_count;
-  float eta;
+  OpticalSurface surface;
   float diffuse_transmittance;  // of a smooth surface under uniform illumination from outside
   PathTools tools;  // where there are any, cells hide the light and not shadow maps, which know nothing of them
 };

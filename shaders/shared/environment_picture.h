@@ -14,7 +14,8 @@ const uint ENVIRONMENT_ROWS = 128u;
 const uint ENVIRONMENT_RAYS = 0u;              // radiance as the rays see it that ask what hides it
 const uint ENVIRONMENT_REFLECTED = 1u;         // radiance as a rough surface reflects it, by the mirrored view
 const uint ENVIRONMENT_REFLECTED_PLACED = 2u;  // the same where the image of a roughness is white
-const uint ENVIRONMENT_ENTERING = 3u;          // from here on one for each index: irradiance that enters, by the normal
+const uint ENVIRONMENT_COATED = 3u;            // the same as the upper side of a coat reflects it
+const uint ENVIRONMENT_ENTERING = 4u;  // from here on one for each surface: irradiance that enters, by the normal
 
 #ifndef __cplusplus
 // Texel of a picture of an environment.

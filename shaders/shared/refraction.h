@@ -3,6 +3,7 @@
 #ifndef QUADGRAPH_REFRACTION_H
 #define QUADGRAPH_REFRACTION_H
 
+#include "shared/optical_surface.h"
 #include "shared/shared.h"
 
 #ifdef __cplusplus
@@ -11,16 +12,18 @@ namespace quadgraph::gpu {
 
 // What a rough surface reflects is known at the squares of even steps of GGX alpha, and of the cosine of the view.
 const uint REFLECTANCE_STEPS = 12u;
-const uint REFLECTANCE_VALUES = (REFLECTANCE_STEPS + 1u) * (REFLECTANCE_STEPS + 1u);
+const uint REFLECTANCE_ROW = REFLECTANCE_STEPS + 1u;
+// By GGX alpha, then by cosine; and behind these of the coat's upper side alone, by cosine.
+const uint REFLECTANCE_VALUES = (REFLECTANCE_ROW + 1u) * REFLECTANCE_ROW;
 
-// Of a body by its index of refraction.
+// Of a body by its surface.
 struct Refraction {
-  float eta;                   // inside over outside, 1 to 3
+  OpticalSurface surface;
   float transmitted;           // share of uniform illumination from outside that enters
   float kept;                  // share of diffuse light inside that the surface reflects back
   float radiance_norm;         // integral of F_t cos over the hemisphere, sr
   uint entering;               // picture of environments that enters (ENVIRONMENT_ENTERING)
-  QG_REF(Floats) reflectance;  // of rough surfaces, REFLECTANCE_VALUES by GGX alpha, then by cosine
+  QG_REF(Floats) reflectance;  // of rough surfaces, REFLECTANCE_VALUES
 };
 
 // Kinds of the outside faces of a level: the address of a Refraction for each body in two words, low and high, the
@@ -51,21 +54,32 @@ Refraction refraction_behind(Uints kinds, uint face) {
   return Refractions(uvec2(kinds.at[0], kinds.at[1])).at[body_behind(kinds, face)];
 }
 
+OpticalSurface surface_of(Uints kinds, uint face) {
+  return Refractions(uvec2(kinds.at[0], kinds.at[1])).at[body_behind(kinds, face)].surface;
+}
+
 float eta_behind(Uints kinds, uint face) {
-  return Refractions(uvec2(kinds.at[0], kinds.at[1])).at[body_behind(kinds, face)].eta;
+  return Refractions(uvec2(kinds.at[0], kinds.at[1])).at[body_behind(kinds, face)].surface.eta;
 }
 
 // Share of even light from outside that a surface of GGX roughness `alpha` reflects towards a view at that cosine.
 float rough_reflectance(Refraction body, float cosine, float alpha) {
-  uint row = REFLECTANCE_STEPS + 1u;
   vec2 place = sqrt(clamp(vec2(cosine, alpha), 0.0, 1.0)) * float(REFLECTANCE_STEPS);
   uvec2 cell = min(uvec2(place), uvec2(REFLECTANCE_STEPS - 1u));
   vec2 share = place - vec2(cell);
-  uint at = cell.y * row + cell.x;
+  uint at = cell.y * REFLECTANCE_ROW + cell.x;
   float less = mix(body.reflectance.at[at], body.reflectance.at[at + 1u], share.x);
-  at += row;
+  at += REFLECTANCE_ROW;
   float more = mix(body.reflectance.at[at], body.reflectance.at[at + 1u], share.x);
   return mix(less, more, share.y);
+}
+
+// Of that the share that the upper side of the coat reflects.
+float coat_reflectance(Refraction body, float cosine) {
+  if (body.surface.coat == 0.0) return 0.0;
+  float place = sqrt(clamp(cosine, 0.0, 1.0)) * float(REFLECTANCE_STEPS);
+  uint cell = min(uint(place), REFLECTANCE_STEPS - 1u), at = REFLECTANCE_ROW * REFLECTANCE_ROW + cell;
+  return mix(body.reflectance.at[at], body.reflectance.at[at + 1u], place - float(cell));
 }
 #endif
 

@@ -11,11 +11,11 @@ struct Lambertian {
   vec4 share, cosine;
 };
 
-Lambertian lambertian(float eta) {
+Lambertian lambertian(OpticalSurface surface) {
   Lambertian light;
   for (uint k = 0u; k < LAMBERTIAN_NODES; ++k) {
-    light.share[k] = LAMBERTIAN_W[k] * fresnel_transmittance(sqrt(LAMBERTIAN_U[k]), eta);
-    light.cosine[k] = sqrt(1.0 - (1.0 - LAMBERTIAN_U[k]) / (eta * eta));
+    light.share[k] = LAMBERTIAN_W[k] * fresnel_transmittance(sqrt(LAMBERTIAN_U[k]), surface);
+    light.cosine[k] = sqrt(1.0 - (1.0 - LAMBERTIAN_U[k]) / (surface.eta * surface.eta));
   }
   light.share /= dot(light.share, vec4(1));
   return light;

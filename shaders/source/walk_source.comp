@@ -25,7 +25,7 @@ void meet_surface(inout Ray ray, uint face) {
   vec3 n = outward_normal(face);
   float cosine = dot(ray.direction, n);
   if (is_open(BODY.face_kinds, face)) {
-    vec3 reflected = ray.power * internal_reflectance(cosine, eta_behind(BODY.face_kinds, face));
+    vec3 reflected = ray.power * internal_reflectance(cosine, surface_of(BODY.face_kinds, face));
     vec3 leaving = ray.power - reflected;
     unscattered += leaving;
     add_power(push.unscattered, face, leaving);

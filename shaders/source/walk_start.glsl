@@ -37,7 +37,7 @@ struct OpenFace {
   Leaning leaning;
   vec3 facet;  // normal of what it is made of
   float area;  // mm^2
-  float eta;   // of the body behind it
+  OpticalSurface surface;
 };
 
 // Whether light can enter by a face.
@@ -53,36 +53,36 @@ bool opens(uint face, out OpenFace open) {
                             open.corners[2] - open.corners[0]);
   open.facet = facet_normal(open.leaning);
   open.tet = BODY.face_tets.at[face];
-  open.eta = eta_behind(BODY.face_kinds, face);
+  open.surface = surface_of(BODY.face_kinds, face);
   return true;
 }
 
 struct Frame {
   vec3 position, normal, facet, tangent;
   uint number;  // of the origin of rays, among all of the surface
-  float eta;
+  OpticalSurface surface;
 };
 
 // The way light travels outside, at a point of a face.
 vec3 incoming(BeamRecord beam, uint ray, Frame at) {
   if (beam.kind == BEAM_DIRECTIONAL) return beam.travel_or_from;
   if (beam.kind == BEAM_POINT) return normalize(at.position - beam.travel_or_from);
-  if (beam.kind == BEAM_RECTANGLE) return rectangle_incoming(beam, at.position, at.facet, at.number, at.eta);
+  if (beam.kind == BEAM_RECTANGLE) return rectangle_incoming(beam, at.position, at.facet, at.number, at.surface);
   return lambertian_incoming(ray, at.normal, at.tangent);
 }
 
 // Share of the power of a face that one ray takes, by its number.
-float share_of(uint ray, float eta) {
-  return rays == 1u ? 1.0 : 0.5 * lambertian(eta).share[ray / 2u];
+float share_of(uint ray, OpticalSurface surface) {
+  return rays == 1u ? 1.0 : 0.5 * lambertian(surface).share[ray / 2u];
 }
 
 float known_mean_cosine = 0.0, known_for = 0.0;  // and the index that it is known for; 0: none yet
 
-float mean_cosine(float eta) {
-  if (known_for != eta) {
-    Lambertian light = lambertian(eta);
+float mean_cosine(OpticalSurface surface) {
+  if (known_for != surface.eta) {
+    Lambertian light = lambertian(surface);
     known_mean_cosine = dot(light.share, light.cosine);
-    known_for = eta;
+    known_for = surface.eta;
   }
   return known_mean_cosine;
 }
@@ -94,7 +94,7 @@ bool turned_by_face(BeamRecord way) {
 
 // Inside direction of BEAM_MEAN.
 vec3 mean_direction(Frame at) {
-  float cosine = mean_cosine(at.eta);
+  float cosine = mean_cosine(at.surface);
   return normalize(sqrt(1.0 - cosine * cosine) * at.tangent - cosine * at.normal);
 }
 
@@ -105,14 +105,14 @@ vec3 entered_by(BeamRecord beam, Frame at) {
 
 // The way inside of light of a beam that travels along `direction` outside.
 vec3 inside_way(BeamRecord beam, vec3 direction, Frame at) {
-  return refracted_by_facet(direction, at.normal, entered_by(beam, at), at.eta);
+  return refracted_by_facet(direction, at.normal, entered_by(beam, at), at.surface.eta);
 }
 
 // The ray inside, of power that has entered at a point of a face. A Lambertian beam by one ray goes straight down, as
 // deep as the mean of its directions: askew it would take light aside, each face to its own side.
 Ray start(BeamRecord way, uint ray, TetPoint point, Frame at, vec3 power) {
   if (way.kind == BEAM_LAMBERTIAN && rays == 1u) {
-    return Ray(point, -at.normal, power, vec3(0), 1.0 / mean_cosine(at.eta));
+    return Ray(point, -at.normal, power, vec3(0), 1.0 / mean_cosine(at.surface));
   }
   vec3 inside = way.kind == BEAM_MEAN ? mean_direction(at) : inside_way(way, incoming(way, ray, at), at);
   return Ray(point, inside, power, vec3(0), 1.0);
@@ -146,12 +146,12 @@ void walk_from(Beam beam, uint face, uint ray) {
   vec3 tangent = vec3(0);
   if (turned_by_face(beam.way)) tangent = face_tangent(face, open.normal, open.corners[1] - open.corners[0]);
   bool one = one_ray_does(least, largest, open.corners, open.area);
-  float share = 0.25 * open.area * share_of(ray, open.eta);
+  float share = 0.25 * open.area * share_of(ray, open.surface);
   for (uint k = one ? FACE_CENTRE : 0u; k < FACE_QUARTERS; ++k) {
     vec3 power = share * (one ? sum : q[k]);
     if (power == vec3(0)) continue;
     vec3 l = quarter_centre(k);
-    Frame at = Frame(open.corners * l, open.normal, open.facet, tangent, FACE_QUARTERS * face + k, open.eta);
+    Frame at = Frame(open.corners * l, open.normal, open.facet, tangent, FACE_QUARTERS * face + k, open.surface);
     follow(beam.way, ray, face, start_on_face(open.tet, open.ids, l), at, power);
   }
 }

@@ -84,7 +84,8 @@ void meet_surface(inout Ray ray, uint face) {
   vec3 n = outward_normal(face);
   float cosine = clamp(dot(ray.direction, n), 0.0, 1.0);
   if (is_open(BODY.face_kinds, face)) {
-    float eta = eta_behind(BODY.face_kinds, face), reflected = internal_reflectance(cosine, eta);
+    OpticalSurface surface = surface_of(BODY.face_kinds, face);
+    float eta = surface.eta, reflected = internal_reflectance(cosine, surface);
     vec3 leaving = (1.0 - reflected) * ray.power;
     if (scattered || push.g != vec3(0)) {
       add_power(push.leaving, face, leaving);

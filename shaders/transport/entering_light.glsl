@@ -29,9 +29,9 @@ const float REFLECTED_RAYS = 4.0;
 // What facets of that normal reflect of light that travels along `direction` and whose power `went_in`, where that
 // enters elsewhere; what they reflect into the face is lost.
 void follow_reflected(vec3 direction, vec3 facet, uint face, Frame at, vec3 went_in) {
-  if (at.eta == 1.0 || !sees_body(face)) return;
+  if (!reflects(at.surface) || !sees_body(face)) return;
   float cosine = clamp(-dot(direction, facet), 0.0, 1.0);
-  float transmitted = fresnel_transmittance(cosine, at.eta);
+  float transmitted = fresnel_transmittance(cosine, at.surface);
   if (transmitted < 1e-3) return;
   float reflected = 1.0 / transmitted - 1.0, chance = min(REFLECTED_RAYS * reflected, 1.0);
   if (uniform_number(state) >= chance) return;
@@ -56,13 +56,13 @@ void follow(BeamRecord way, uint ray, uint face, TetPoint point, Frame at, vec3 
 
 // A point of a face, by its barycentric coordinates. It has a direction without a tangent. number: of the ray.
 Frame frame_at(OpenFace open, vec3 l, uint number) {
-  return Frame(open.corners * l, open.normal, open.facet, vec3(0), number, open.eta);
+  return Frame(open.corners * l, open.normal, open.facet, vec3(0), number, open.surface);
 }
 
 // From where it entered by facets, and on from there what these reflect. direction: outside, the way the light travels.
 void enter(OpenFace open, uint face, vec3 l, Frame at, vec3 direction, vec3 power) {
   entered += power;
-  vec3 inside = refracted_by_facet(direction, at.normal, open.facet, at.eta);
+  vec3 inside = refracted_by_facet(direction, at.normal, open.facet, at.surface.eta);
   go_in(Ray(start_on_face(open.tet, open.ids, l), inside, power, vec3(0), 1.0));
   follow_reflected(direction, open.facet, face, at, power);
 }
@@ -73,7 +73,7 @@ void walk_from_sky(Beam beam, uint face, uint ray) {
   uint number = push.first + push.rays * face + ray;
   state = hash(face ^ hash(ray + push.first));
   vec3 along = open.corners[1] - open.corners[0];
-  SkyRay drawn = drawn_from_sky(beam, number, open.normal, open.leaning, along, open.eta, state);
+  SkyRay drawn = drawn_from_sky(beam, number, open.normal, open.leaning, along, open.surface, state);
   vec3 power = open.area / float(push.rays) * drawn.let_in * push.scale.at[0].inverse;
   if (power == vec3(0)) return;
   vec3 l = spread_over_face(number);

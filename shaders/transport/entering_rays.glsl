@@ -32,7 +32,7 @@ struct SkyRay {
 // Drawn among candidates by what they bring (resampled importance sampling, Talbot, Cline and Egbert 2005), which are
 // spread over the hemisphere by its cosine. number: of the ray, among all of the surface; along: any way in the face;
 // leaning: of its facets, by which the light enters.
-SkyRay drawn_from_sky(Beam beam, uint number, vec3 normal, Leaning leaning, vec3 along, float eta, inout uint state) {
+SkyRay drawn_from_sky(Beam beam, uint number, vec3 normal, Leaning leaning, vec3 along, OpticalSurface surface, inout uint state) {
   vec3 tangent = normalize(along);
   SkyRay drawn = SkyRay(normal, vec3(0));
   vec3 other = cross(normal, tangent);
@@ -43,7 +43,7 @@ SkyRay drawn_from_sky(Beam beam, uint number, vec3 normal, Leaning leaning, vec3
     float square = spread_number(0u, n, 0u), azimuth = 6.2831853 * spread_number(0u, n, 1u);
     vec3 across = cos(azimuth) * tangent + sin(azimuth) * other;
     vec3 towards = sqrt(square) * normal + sqrt(1.0 - square) * across;
-    float cosine = sqrt(square), enters = let_in_by_facets(leaning, towards, cosine, eta) / max(cosine, 1e-20);
+    float cosine = sqrt(square), enters = let_in_by_facets(leaning, towards, cosine, surface) / max(cosine, 1e-20);
     vec3 let_in = 3.1415927 * enters * sky_radiance(beam, towards);
     float weight = let_in.x + let_in.y + let_in.z;
     all += weight;

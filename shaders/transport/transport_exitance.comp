@@ -28,7 +28,8 @@ struct Surface {
   uvec3 ids;
   mat3 corners;
   vec3 normal, tangent, side;
-  float area, eta;
+  float area;
+  OpticalSurface surface;
 };
 
 vec3 left, entered_again;  // of the face, over its area
@@ -37,15 +38,15 @@ vec3 left, entered_again;  // of the face, over its area
 void add_leaving(Surface at, float stratum, float azimuth, inout uint state) {
   float u = (stratum + uniform_number(state)) / float(push.rays);
   float s = sqrt(uniform_number(state)), t = uniform_number(state);
-  float cosine = sqrt(1.0 - (1.0 - u) / (at.eta * at.eta));
+  float cosine = sqrt(1.0 - (1.0 - u) / (at.surface.eta * at.surface.eta));
   vec3 across = cos(azimuth) * at.tangent + sin(azimuth) * at.side;
-  vec3 inside = normalize(sqrt(1.0 - u) / at.eta * across - cosine * at.normal);
+  vec3 inside = normalize(sqrt(1.0 - u) / at.surface.eta * across - cosine * at.normal);
   vec3 l = vec3(1.0 - s, s * (1.0 - t), s * t);
   vec3 before, now = arriving(ray_from(start_on_face(at.tet, at.ids, l), inside, hash(state)), before);
-  vec3 leaves = fresnel_transmittance(sqrt(u), at.eta) * (now - before);
+  vec3 leaves = fresnel_transmittance(sqrt(u), at.surface) * (now - before);
   left += leaves;
   if (!sees_body(at.face)) return;
-  Entrance entry = through_air(at.face, at.corners * l, leaving_direction(-inside, at.normal, cosine, at.eta), state);
+  Entrance entry = through_air(at.face, at.corners * l, leaving_direction(-inside, at.normal, cosine, at.surface.eta), state);
   if (entry.face != NO_FACE) entered_again += leaves;
 }
 
@@ -72,13 +73,13 @@ void main() {
   at.tangent = normalize(at.corners[1] - at.corners[0]);
   at.side = cross(at.normal, at.tangent);
   at.tet = BODY.face_tets.at[at.face];
-  at.eta = eta_behind(BODY.face_kinds, at.face);
+  at.surface = surface_of(BODY.face_kinds, at.face);
   uint state = hash(i ^ hash(push.seed));
   float turned = TWO_PI * uniform_number(state);
   left = vec3(0);
   entered_again = vec3(0);
   for (uint k = 0u; k < push.rays; ++k) add_leaving(at, float(k), turned + GOLDEN_ANGLE * float(k), state);
-  float share = 1.0 / (4.0 * at.eta * at.eta * float(push.rays));
+  float share = 1.0 / (4.0 * at.surface.eta * at.surface.eta * float(push.rays));
   push.exitance.at[i] = kept(push.exitance.at[i]) + share * left;
   add_sums(share * at.area);
   atomicAdd(field.segments.at[0], crossed);

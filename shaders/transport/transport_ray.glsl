@@ -131,7 +131,8 @@ bool goes_past(uint face, inout Ray ray) {
   vec3 n = outward_normal(face);
   float cosine = clamp(dot(ray.direction, n), 0.0, 1.0);
   if (is_open(BODY.face_kinds, face)) {
-    float eta = eta_behind(BODY.face_kinds, face), reflected = internal_reflectance(cosine, eta);
+    OpticalSurface surface = surface_of(BODY.face_kinds, face);
+    float eta = surface.eta, reflected = internal_reflectance(cosine, surface);
     if (!sees_body(face)) {
       ray.left *= reflected;
       ray.left_before *= reflected;

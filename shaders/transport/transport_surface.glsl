@@ -59,9 +59,9 @@ Entrance through_air(uint face, vec3 point, vec3 direction, inout uint state) {
     point += hit.distance * direction;
     vec3 n = outward_normal(face);
     float cosine = clamp(-dot(direction, n), 0.0, 1.0);
-    float eta = eta_behind(BODY.face_kinds, face);
-    if (is_open(BODY.face_kinds, face) && uniform_number(state) < fresnel_transmittance(cosine, eta)) {
-      return Entrance(face, clamp(hit.place, vec2(0), vec2(1)), refracted(direction, n, eta));
+    OpticalSurface surface = surface_of(BODY.face_kinds, face);
+    if (is_open(BODY.face_kinds, face) && uniform_number(state) < fresnel_transmittance(cosine, surface)) {
+      return Entrance(face, clamp(hit.place, vec2(0), vec2(1)), refracted(direction, n, surface.eta));
     }
     direction = normalize(direction + 2.0 * cosine * n);
   }

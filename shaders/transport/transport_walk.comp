@@ -43,7 +43,8 @@ void meet_surface(inout Ray ray, uint face) {
   vec3 n = outward_normal(face);
   float cosine = dot(ray.direction, n);
   if (is_open(BODY.face_kinds, face)) {
-    float eta = eta_behind(BODY.face_kinds, face), reflected = internal_reflectance(cosine, eta);
+    OpticalSurface surface = surface_of(BODY.face_kinds, face);
+    float eta = surface.eta, reflected = internal_reflectance(cosine, surface);
     if (!sees_body(face)) {
       vec3 kept = ray.power * reflected;
       leave(face, ray.power - kept);

@@ -138,8 +138,8 @@ Environment environment_of(Image picture) {
   return {series_of(resampled(picture, series_width, series_height), environment_degree), std::move(suns)};
 }
 
-std::vector<double> irradiance_degrees(double eta, int degree) {
-  return degrees_of([&](double c) { return c > 0 ? c * fresnel_transmittance(c, eta) : 0; }, degree);
+std::vector<double> irradiance_degrees(const OpticalSurface& surface, int degree) {
+  return degrees_of([&](double c) { return c > 0 ? c * fresnel_transmittance(c, surface) : 0; }, degree);
 }
 
 std::vector<double> ray_degrees(int degree) {

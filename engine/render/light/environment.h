@@ -8,6 +8,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "engine/optics/optical_surface.h"
 #include "engine/render/light/image_file.h"
 #include "engine/render/light/spherical_harmonics.h"
 
@@ -35,8 +36,8 @@ Environment environment_of(Image picture);
 std::vector<Sun> take_suns(Image& picture);
 
 // What the kernels below make of the degrees, up to `degree`.
-// Irradiance that enters a face by the direction of its normal: max(cos, 0) F_t(cos, eta).
-std::vector<double> irradiance_degrees(double eta, int degree);
+// Irradiance that enters a face by the direction of its normal: max(cos, 0) F_t(cos).
+std::vector<double> irradiance_degrees(const OpticalSurface& surface, int degree);
 // Radiance as rays see it that stand for 1/256 of a hemisphere.
 std::vector<double> ray_degrees(int degree);
 // Radiance that a surface of GGX roughness `alpha` reflects, over its reflectance, by the mirrored view: the light that

@@ -48,9 +48,9 @@ EnvironmentImage upload_environment(device::Device& device, Image&& picture) {
 
 // Brings picture `number` up to date: `known` is what it was made for, nothing while it is written, as that may be
 // given up half-way.
-template <typename Degrees>
-void renew_picture(device::Device& device, EnvironmentImage& image, std::uint32_t number, float& known, float wanted,
-                   const Degrees& degrees) {
+template <typename Known, typename Degrees>
+void renew_picture(device::Device& device, EnvironmentImage& image, std::uint32_t number, Known& known,
+                   const Known& wanted, const Degrees& degrees) {
   if (known == wanted) return;
   known = 0;
   write_picture(device, image, number, degrees(wanted));
@@ -90,19 +90,19 @@ void LightImages::load(std::span<const Light> lights) {
   environments_ = std::move(environments);
 }
 
-void LightImages::set_eta(std::span<const float> eta) {
-  const auto entering = [](float index) { return irradiance_degrees(index, irradiance_degree); };
+void LightImages::set_surfaces(std::span<const OpticalSurface> surfaces) {
+  const auto entering = [](const OpticalSurface& surface) { return irradiance_degrees(surface, irradiance_degree); };
   for (auto& [file, loaded] : environments_) {
     EnvironmentImage& image = loaded.image;
-    make_room(device_, image, gpu::ENVIRONMENT_ENTERING + eta.size());
-    image.eta.resize(eta.size());
-    for (std::uint32_t i = 0; i < eta.size(); ++i) {
-      renew_picture(device_, image, gpu::ENVIRONMENT_ENTERING + i, image.eta[i], eta[i], entering);
+    make_room(device_, image, gpu::ENVIRONMENT_ENTERING + surfaces.size());
+    image.surfaces.resize(surfaces.size(), 0.0);
+    for (std::uint32_t i = 0; i < surfaces.size(); ++i) {
+      renew_picture(device_, image, gpu::ENVIRONMENT_ENTERING + i, image.surfaces[i], surfaces[i], entering);
     }
   }
 }
 
-void LightImages::set_roughness(float roughness, float placed) {
+void LightImages::set_roughness(float roughness, float placed, float coat) {
   const auto write = [&](EnvironmentImage& image, std::uint32_t number, float& known, float wanted) {
     const auto reflected = [](float of) { return reflection_degrees(of, environment_degree); };
     if (wanted != 0) renew_picture(device_, image, number, known, wanted, reflected);
@@ -110,6 +110,7 @@ void LightImages::set_roughness(float roughness, float placed) {
   for (auto& [file, loaded] : environments_) {
     write(loaded.image, gpu::ENVIRONMENT_REFLECTED, loaded.image.roughness, roughness);
     write(loaded.image, gpu::ENVIRONMENT_REFLECTED_PLACED, loaded.image.placed_roughness, placed);
+    write(loaded.image, gpu::ENVIRONMENT_COATED, loaded.image.coat_roughness, coat);
   }
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "engine/device/memory.h"
+#include "engine/optics/optical_surface.h"
 #include "engine/render/light/environment.h"
 #include "engine/render/light/image_file.h"
 #include "engine/render/light/lights.h"
@@ -24,9 +25,10 @@ struct ProjectedImage {
 struct EnvironmentImage {
   Environment environment;
   std::vector<glm::vec3> pictures;
-  device::Buffer texels;                      // the same
-  std::vector<float> eta{};                   // what the pictures are for: from ENVIRONMENT_ENTERING on
-  float roughness = 0, placed_roughness = 0;  // the same; 0: none yet
+  device::Buffer texels;  // the same
+  std::vector<OpticalSurface>
+      surfaces{};  // what the pictures are for: from ENVIRONMENT_ENTERING on; of index 0: none yet
+  float roughness = 0, placed_roughness = 0, coat_roughness = 0;  // the same; 0: none yet
 };
 
 class LightImages {
@@ -41,10 +43,10 @@ class LightImages {
   const ProjectedImage& projected(const std::string& file) const { return projected_.at(file).image; }
   const EnvironmentImage& environment(const std::string& file) const { return environments_.at(file).image; }
 
-  // Brings the pictures of environments up to date that depend on the indices of refraction, each given once; on the
-  // roughness of the surface, and on that where an image says so, 0 without one.
-  void set_eta(std::span<const float> eta);
-  void set_roughness(float roughness, float placed);
+  // Brings the pictures of environments up to date that depend on surfaces, each given once; on the roughness of the
+  // surface, on that where an image says so, 0 without one, and on that of a coat, 0 without one.
+  void set_surfaces(std::span<const OpticalSurface> surfaces);
+  void set_roughness(float roughness, float placed, float coat);
 
  private:
   template <typename T>

@@ -68,7 +68,7 @@ struct PathInput {
   const DisplayBuffers& mesh;
   const device::Buffer& field;  // gpu::PathField
   const ShadowMaps& shadows;
-  float eta = 1;
+  OpticalSurface surface{};
   float roughness = 0.3f;                             // alpha of GGX
   const PlacedRoughness* placed_roughness = nullptr;  // as in RasterInput, as are the next
   const PlacedNormals* placed_normals = nullptr;

@@ -31,7 +31,7 @@ gpu::SurfaceScene surface_scene(const RasterInput& input, const Camera& camera) 
                           .origin = camera.origin,
                           .eye = camera.seen_from(),
                           .reach = camera.reach,
-                          .eta = 0,
+                          .surface = {},
                           .radiance_norm = 0,
                           .roughness = input.roughness,
                           .mirrored = input.mirrored,
@@ -77,12 +77,12 @@ gpu::SurfaceScene surface_scene(const PathInput& input, const Camera& camera) {
   scene.origin = camera.origin;
   scene.eye = camera.seen_from();
   scene.reach = camera.reach;
-  scene.eta = input.eta;
+  scene.surface = single_precision(input.surface);
   scene.roughness = input.roughness;
   scene.mirrored = input.mirrored;
   scene.roughness_map = roughness_map(input.placed_roughness);
   scene.normal_map = normal_map(input.placed_normals);
-  scene.radiance_norm = static_cast<float>(radiance_norm(input.eta));
+  scene.radiance_norm = static_cast<float>(radiance_norm(input.surface));
   scene.light_count = input.shadows.light_count();
   scene.vertices = input.mesh.vertices.address();
   scene.normals = input.mesh.normals.address();

@@ -320,9 +320,9 @@ class Engine:
         1/mm, in place of those of the last solve; power: (beams, 3), factors of the beams that its light is made of, in
         the order of the lights, 1 by default; bounces: with light that leaves one part and enters another, which one
         level of a file knows; by default on that level; tolerance: of solves and bounces. Raises InputError before a
-        solve, for a deformed body, for bodies of different indices of refraction, for bounces on another level, for a
-        ray that starts at no open face or goes into the body, and for other shapes and values; SolverError where a
-        solve does not end.
+        solve, for a deformed or coated body, for bodies of different indices of refraction, for bounces on another
+        level, for a ray that starts at no open face or goes into the body, and for other shapes and values;
+        SolverError where a solve does not end.
         """
         parameters = (sigma_s_prime, sigma_a, power)
         return forward_model(self._engine, level, parameters, views, model, bounces, tolerance)

@@ -34,8 +34,8 @@ class Material:
     to 3. pattern: mixes in the second set, with `period` mm from one vein, band, ... to the next (of layers, the depth
     of the upper one) and a sharpness from 1 to 1000. roughness: of the surface, GGX alpha, where a picture says none;
     None is 0.3. g, second_g: mean cosines of the angle by which light scatters, above -1 and below 1, that the
-    sigma_s_prime were reduced by, where they are known: solvers do without, walks of `certify` go by them. Raises
-    InputError.
+    sigma_s_prime were reduced by, where they are known: solvers do without, walks of `certify` go by them. coat: share
+    of the surface that lies under a clear layer of index coat_eta and roughness coat_roughness. Raises InputError.
     """
 
     sigma_s_prime: RGB
@@ -49,6 +49,9 @@ class Material:
     roughness: float | None = None
     g: RGB | None = None
     second_g: RGB | None = None
+    coat: float | None = None
+    coat_eta: float | None = None
+    coat_roughness: float | None = None
 
     def __post_init__(self) -> None:
         """Check, and make numbers plain. Raises InputError."""

@@ -1,7 +1,7 @@
 """`quadgraph export`: a baked body with its material as glTF, for other renderers.
 
 What is inside goes by KHR_materials_volume and the draft KHR_materials_volume_scatter, as `quadgraph colours` and
-`--material own` read them; the index of refraction and the roughness go along.
+`--material own` read them; the index of refraction, roughness and coat go along.
 """
 
 from __future__ import annotations
@@ -95,6 +95,8 @@ def _gltf_material(body: str, text: str, thickness: float) -> dict:
     alpha = _ROUGHNESS if found.roughness is None else found.roughness
     surface = {"baseColorFactor": [1.0, 1.0, 1.0, 1.0], "metallicFactor": 0.0, "roughnessFactor": float(np.sqrt(alpha))}
     extensions = gltf_media.extensions_of(scattering, absorption, found.eta, thickness)
+    if found.coat and found.coat_eta and found.coat_roughness:
+        extensions[gltf_media.CLEAR_COAT] = gltf_media.clear_coat_of(found.coat, found.coat_eta, found.coat_roughness)
     return {"name": f"{body}: {text}"[:200], "pbrMetallicRoughness": surface, "extensions": extensions}
 
 

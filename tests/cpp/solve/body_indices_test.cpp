@@ -95,5 +95,21 @@ TEST_CASE("as many bits name a body as tell all apart, and none where they are a
     const std::uint32_t bits = refractions.boundaries(Method::fem, Source::buried, Model::sp3).bits();
     CHECK(bits == (bodies == 1 ? 0 : bodies == 2 ? 1 : bodies == 3 ? 3 : 255));
   }
-  CHECK(different_indices(std::array{1.5f, 1.3f, 1.5f}) == std::vector{1.5f, 1.3f});
+  const OpticalSurface high(1.5), low(1.3), coated(1.5, {.share = 1});
+  CHECK(different_surfaces(std::array{high, low, high, coated}) == std::vector{high, low, coated});
+}
+
+TEST_CASE("a coat is of one body, of all or of none, and bodies that it parts have boundaries of their own") {
+  const CheckedContext checked;
+  Refractions refractions(checked.context, 3);
+  const Coat lacquer{.share = 1};
+  CHECK_FALSE(refractions.set_coats({}));
+  CHECK(refractions.set_coats(std::array{Coat{}, lacquer, Coat{}}));
+  CHECK(refractions.boundaries(Method::fem, Source::buried, Model::sp3).bits() == 3);
+  CHECK(refractions.surfaces()[1].coat == lacquer);
+  CHECK(refractions.set(std::array{1.4f}));
+  CHECK(refractions.surfaces()[1] == OpticalSurface(double{1.4f}, lacquer));
+  CHECK(refractions.set_coats(std::array{lacquer}));
+  CHECK(refractions.boundaries(Method::fem, Source::buried, Model::sp3).bits() == 0);
+  CHECK_THROWS_AS(refractions.set_coats(std::array{lacquer, lacquer}), InputError);
 }

@@ -60,6 +60,61 @@ def test_a_view_without_a_curve_shows_what_the_linear_tone_shows(picture, member
     assert np.abs(shown.astype(int) - expected.astype(int)).max() <= 1  # of 255: one is dithered
 
 
+# AgX as a config has it: a matrix, 16.5 stops, a curve from a file, and the matrix back.
+AGX = """ocio_profile_version: 2
+roles: {default: lin_srgb}
+displays:
+  Screen:
+    - !<View> {name: AgX, colorspace: agx}
+colorspaces:
+  - !<ColorSpace> {name: lin_srgb}
+  - !<ColorSpace>
+    name: agx
+    from_scene_reference: !<GroupTransform>
+      children:
+        - !<MatrixTransform> {matrix: INSET}
+        - !<AllocationTransform> {allocation: lg2, vars: [-12.47393, 4.026069]}
+        - !<FileTransform> {src: curve.spi1d, interpolation: linear}
+        - !<MatrixTransform> {matrix: OUTSET}
+"""
+INSET = [
+    [0.842479062, 0.0784336, 0.0792237451],
+    [0.0423282422, 0.878468636, 0.0791661275],
+    [0.0423756549, 0.0784336, 0.879142974],
+]
+
+
+def sigmoid(x: np.ndarray) -> np.ndarray:
+    """The curve of AgX [Sobotka 2022] through (0, 0), (p, 1/2) with slope 2, and (1, 1), by its own equations."""
+    pivot = 10 / 16.5
+    bent = np.empty_like(x)
+    for power, side, sign in ((3.0, x < pivot, -1), (3.25, x >= pivot, 1)):
+        run, rise = (pivot, 0.5) if sign < 0 else (1 - pivot, 0.5)
+        scale = ((2 * run) ** -power * ((2 * run / rise) ** power - 1)) ** (-1 / power)
+        term = 2 * sign * (x[side] - pivot) / scale
+        bent[side] = sign * scale * term / (1 + term**power) ** (1 / power) + 0.5
+    return bent
+
+
+@pytest.mark.parametrize("members", [{}, {"exposure": 3.5}, {"exposure": -3.0, "background": "studio"}])
+def test_agx_is_what_opencolorio_makes_of_its_parts(picture, tmp_path, members):
+    curve = "\n".join(f"{value:.9f}" for value in sigmoid(np.linspace(0, 1, 8192)))
+    head = "Version 1\nFrom 0 1\nLength 8192\nComponents 1\n"
+    (tmp_path / "curve.spi1d").write_text(f"{head}{{\n{curve}\n}}\n")
+
+    def by_rows(matrix: np.ndarray) -> str:
+        whole = np.eye(4)
+        whole[:3, :3] = matrix
+        return str(whole.ravel().tolist())
+
+    text = AGX.replace("INSET", by_rows(np.array(INSET))).replace("OUTSET", by_rows(np.linalg.inv(INSET)))
+    (tmp_path / "agx.ocio").write_text(text)
+    shown = ColourConfig(tmp_path / "agx.ocio").shown(picture, how(**members))
+    expected = picture.srgb(how(tone="agx", **members))
+    assert expected.max() > 40
+    assert np.abs(shown.astype(int) - expected.astype(int)).max() <= 1  # of 255
+
+
 def test_the_config_s_own_display_and_view_are_taken(picture):
     config = ColourConfig("ocio://default")
     assert "ACES" in config.view

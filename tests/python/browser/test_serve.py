@@ -340,6 +340,12 @@ def test_the_page_orbits_changes_the_material_and_comes_back(browser, ball):
         Select(find("material")).select_by_value("marble")
         wait_for(lambda: browser.execute_script("return said.scene.material") == "marble" and at_rest())
         assert find("material-text").get_attribute("value") == "marble"
+        Select(find("coat")).select_by_value("water")
+        wait_for(lambda: browser.execute_script("return said.scene.material") == "marble,coat=water")
+        wait_for(lambda: find("coat").get_attribute("value") == "water")
+        assert find("material").get_attribute("value") == "marble"
+        find("undo").click()
+        wait_for(lambda: find("coat").get_attribute("value") == "")
         find("undo").click()
         wait_for(lambda: browser.execute_script("return said.scene.material") == "skin1")
         process.kill()

@@ -42,6 +42,27 @@ def test_a_material_is_read_as_it_was_written(tmp_path, text):
     assert material["pbrMetallicRoughness"]["roughnessFactor"] ** 2 == pytest.approx(roughness)
 
 
+@pytest.mark.parametrize(("coat", "factor"), [("lacquer", 1), ("0.4", 0.4), ("water", (0.333 / 2.333) ** 2 / 0.04)])
+def test_a_coat_is_written_as_one_that_mirrors_as_much(tmp_path, coat, factor):
+    out = tmp_path / "body.glb"
+    assert main(["export", str(tiny.PATH), "--material", f"milk,coat={coat}", "-o", str(out)]) == 0
+    extensions = document_of(out)["materials"][0]["extensions"]
+    written = extensions["KHR_materials_clearcoat"]
+    assert written["clearcoatFactor"] == pytest.approx(factor, rel=1e-4)
+    assert written["clearcoatRoughnessFactor"] ** 2 == pytest.approx(0.02 if coat == "water" else 0.03)
+    (note,) = gltf_media.coat_note("here", extensions)
+    said = note.partition(": a clear coat, which no volume has: ,")[2].partition(" behind")[0]
+    assert Material.parse(f"milk,{said}").coat == pytest.approx(factor, abs=0.01)
+
+
+def test_a_bare_material_is_written_without_a_coat(tmp_path):
+    out = tmp_path / "body.glb"
+    assert main(["export", str(tiny.PATH), "--material", "milk", "-o", str(out)]) == 0
+    extensions = document_of(out)["materials"][0]["extensions"]
+    assert "KHR_materials_clearcoat" not in extensions
+    assert gltf_media.coat_note("here", extensions) == []
+
+
 def test_the_mesh_is_the_display_s_in_metres(tmp_path):
     out = tmp_path / "body.glb"
     assert main(["export", str(tiny.PATH), "-o", str(out)]) == 0

@@ -30,7 +30,7 @@ pytestmark = [
 ]
 
 PANEL = 340  # pixels of the panel's width at a scale of 1
-FIELD = 412  # height at which materials are typed
+FIELD = 437  # height at which materials are typed
 SIZE = (900, 600)
 LIGHTS = ["--light", "directional:-0.94,-0.1,0.34:1"]  # from azimuth 110
 # Where a test does not say otherwise: a settled picture takes a fifth of the time. No target of --converge, or else a

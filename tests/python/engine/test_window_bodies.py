@@ -20,7 +20,7 @@ from shapes import icosphere, write_obj
 __all__ = ["open_window", "pytestmark", "server"]
 
 LEFT, RIGHT = (PANEL + 140, SIZE[1] // 2), (SIZE[0] - 140, SIZE[1] // 2)  # the middles of the balls
-SHAPE, MOVE_Y = 662, 731  # heights of a section to open, and of a slider in it
+SHAPE, MOVE_Y = 687, 756  # heights of a section to open, and of a slider in it
 BESIDE = (PANEL + 40, SIZE[1] - 200)
 LOOK = ["--view", "0,0", "--radiance", "lambertian", "--light", "ambient:1", "--no-ground", "--exposure", "0"]
 ORANGE = np.array([255, 170, 80])

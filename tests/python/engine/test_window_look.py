@@ -16,7 +16,7 @@ from shapes import icosphere
 __all__ = ["open_window", "pytestmark", "server"]
 
 OPEN, FILE = 158, 183  # a section to open, and the name in it
-PAINT, ERASE = 437, 487  # a section to open, and the row of its tools
+PAINT, ERASE = 462, 512  # a section to open, and the row of its tools
 LOOK = ["--no-ground", "--exposure", "1", "--light", "directional:0,0,-1:1", "--light", "ambient:.3"]
 ABOVE_MESSAGE = np.s_[: SIZE[1] - 110]
 

@@ -14,8 +14,8 @@ from shapes import icosphere
 
 __all__ = ["open_window", "pytestmark", "server"]
 
-MIRROR, LEFT_RIGHT = 687, 733  # the list of mirrors, and an entry of it while it is open
-ADD_SECOND, EYE_OF_TOP = 781, (36, 741)  # the button while there is one layer; an eye of the list
+MIRROR, LEFT_RIGHT = 712, 758  # the list of mirrors, and an entry of it while it is open
+ADD_SECOND, EYE_OF_TOP = 806, (36, 766)  # the button while there is one layer; an eye of the list
 BEFORE_MESSAGE = np.s_[: TALL - 80]
 
 

@@ -17,9 +17,9 @@ __all__ = ["open_window", "pytestmark", "server"]
 
 TALL = 890  # a window in which the section Shape is seen
 # Heights in the mode Look:
-SHAPE, TWIST = 712, 737  # a section to open and its first slider, with two lights
-IMAGE = 537  # the name of an image, of the only light
-PAINT, RADIUS, TO_DEPTH, MASK = 437, 587, 612, 662  # a section to open, and in it
+SHAPE, TWIST = 737, 762  # a section to open and its first slider, with two lights
+IMAGE = 562  # the name of an image, of the only light
+PAINT, RADIUS, TO_DEPTH, MASK = 462, 612, 637, 687  # a section to open, and in it
 
 
 def press(hand: Hand, y: int, *held: str) -> None:

@@ -115,10 +115,16 @@ function put(id, value, text) {
   if (output) output.textContent = text === undefined ? String(element.value) : text;
 }
 
+// What a material's text says of a coat, and all else that it says.
+const coatPart = (part) => /^coat(_eta|_roughness)?=/.test(part);
+const withoutCoat = (text) => text.split(",").filter((part) => !coatPart(part)).join(",");
+const coatOf = (text) => (text.split(",").find((part) => part.startsWith("coat=")) || "coat=").slice(5);
+
 function controls(frame) {
   const scene = frame.scene, picture = scene.picture, material = materialOf(scene);
-  const named = [...$("material").options].some((option) => option.value === material);
-  put("material", named ? material : "");
+  const bare = withoutCoat(material), named = [...$("material").options].some((option) => option.value === bare);
+  put("material", named ? bare : "");
+  put("coat", coatOf(material));
   put("material-text", material);
   const roughness = frame.roughness ?? ROUGHNESS;
   put("roughness", roughness, roughness.toFixed(2));
@@ -283,6 +289,10 @@ function slider(id, change) {
 function listen() {
   $("material").addEventListener("change", () => $("material").value && set(materialPlace(), $("material").value));
   $("material-text").addEventListener("change", () => set(materialPlace(), $("material-text").value));
+  $("coat").addEventListener("change", () => {
+    const bare = withoutCoat(materialOf(said.scene)), coat = $("coat").value;
+    set(materialPlace(), coat ? `${bare},coat=${coat}` : bare);
+  });
   slider("roughness", (value) => set("/picture/roughness", value));
   slider("twist", (degrees) => {
     const others = said.scene.deformation.filter((step) => step.type !== "twist");

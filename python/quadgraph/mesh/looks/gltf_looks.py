@@ -12,7 +12,7 @@ import numpy as np
 
 from quadgraph.base.errors import InputError
 from quadgraph.mesh.gltf_file import GltfFile, read
-from quadgraph.mesh.looks.gltf_media import eta_of, medium_of, number_of, numbers_of
+from quadgraph.mesh.looks.gltf_media import coat_note, eta_of, medium_of, number_of, numbers_of
 from quadgraph.mesh.looks.parts import ColouredMesh, Look, Part
 from quadgraph.mesh.looks.texture import Pictures, Texture, Wrap
 
@@ -95,6 +95,7 @@ class Looks:
         plain = material.get("pbrMetallicRoughness") or _older(extensions)
         medium, note = medium_of(where, extensions)
         self.notes += [note] if note else []
+        self.notes += coat_note(where, extensions)
         for extension, said in extensions.items():
             self.notes += [f"{where}, {extension}, {key}: {why}" for key, why in _IGNORED.items() if key in said]
         red, green, blue, _ = numbers_of(where, plain, "baseColorFactor", (1.0, 1.0, 1.0, 1.0), 0, 1)

@@ -19,6 +19,7 @@ from quadgraph.mesh.looks.parts import StatedMedium
 
 DARKEST = 1e-3  # an attenuation colour below it is taken as it, or nothing would ever pass
 _DEFAULT_ETA = 1.5  # of a dielectric in glTF
+CLEAR_COAT = "KHR_materials_clearcoat"  # ratified: of index 1.5
 
 
 def numbers_of(
@@ -55,6 +56,23 @@ def many_scatter_albedo(single: np.ndarray) -> np.ndarray:
         less = single_scatter_albedo(middle, 0.0) < single
         low, high = np.where(less, middle, low), np.where(less, high, middle)
     return (low + high) / 2
+
+
+def clear_coat_of(share: float, eta: float, alpha: float) -> dict[str, float]:
+    """A coat as glTF has it: as much of one of index 1.5 as mirrors the same along the normal; alpha: GGX."""
+    mirrored = share * ((eta - 1) / (eta + 1)) ** 2 / ((_DEFAULT_ETA - 1) / (_DEFAULT_ETA + 1)) ** 2
+    return {"clearcoatFactor": min(mirrored, 1.0), "clearcoatRoughnessFactor": math.sqrt(alpha)}
+
+
+def coat_note(where: str, extensions: dict) -> list[str]:
+    """What to say of a coat that a file states. Raises InputError."""
+    stated = extensions.get(CLEAR_COAT, {})
+    share = number_of(where, stated, "clearcoatFactor", 0.0, 0, 1)
+    if share == 0:
+        return []
+    alpha = max(number_of(where, stated, "clearcoatRoughnessFactor", 0.0, 0, 1) ** 2, 0.02)
+    text = f",coat={share:.2g},coat_roughness={alpha:.2g}"
+    return [f"{where}: a clear coat, which no volume has: {text} behind the name of a material"]
 
 
 def extensions_of(sigma_s_prime: np.ndarray, sigma_a: np.ndarray, eta: float, thickness: float) -> dict[str, Any]:

@@ -51,12 +51,14 @@ class MeshWalker:
         patch: np.ndarray,
         again: bool = True,
         eta: np.ndarray | None = None,
+        coat: float = 0.0,
     ) -> None:
         """patch (m,): of each triangle; again: whether light outside the body is followed and may enter again.
 
-        eta (m,): index of refraction behind each triangle; None is that of the medium for all.
+        eta (m,): index of refraction behind each triangle; None is that of the medium for all. coat: index
+        of a coat on all of the surface, 0 for none.
         """
-        self._light, self._again = light, again
+        self._light, self._again, self._coat = light, again, float(coat)
         self._patch, self._patches = np.asarray(patch, np.int64), int(patch.max()) + 1
         low, high = surface.vertices.min(axis=0), surface.vertices.max(axis=0)
         self._middle = (low + high) / 2
@@ -87,7 +89,7 @@ class MeshWalker:
         tally = walk_kernel.WalkTally(entered, scattered, again, unscattered, np.zeros(4))
         start = generator.integers(2**64, dtype=np.uint64)
         origins, ways = np.ascontiguousarray(drawn.origins), np.ascontiguousarray(drawn.ways)
-        what = (self._tree, self._near, self._volume, self._eta, self._patch)
+        what = (self._tree, self._near, self._volume, self._eta, self._coat, self._patch)
         walk_kernel.follow(*what, origins, ways, self._again, start, tally)
         return tally, drawn.power
 

@@ -152,12 +152,42 @@ def _bent(dx, dy, dz, nx, ny, nz, along, turn):
 
 
 @njit(cache=True)
-def _at_face(normal, dx, dy, dz, inside, side, eta, state):
-    """The way on of a walk that meets a face, mirrored or refracted by chance, and whether it goes through."""
+def _polarised(index, beyond, sine, across):
+    """Reflectance of one polarisation from one index into another; sine: of its way outside, below both."""
+    here, there = np.sqrt(1 - (sine / index) ** 2), np.sqrt(1 - (sine / beyond) ** 2)
+    a, b = (index * here, beyond * there) if across else (beyond * here, index * there)
+    return ((a - b) / (a + b)) ** 2
+
+
+@njit(cache=True)
+def _through_coat(cosine, eta, coat, inside, state):
+    """Whether light goes through a surface under a coat of that index, bounce after bounce in it."""
+    here, beyond = (eta, 1.0) if inside else (1.0, eta)
+    sine = here * np.sqrt(1 - cosine * cosine)
+    if sine >= 1:
+        return False
+    across = random(state) < 0.5
+    near, far = _polarised(here, coat, sine, across), _polarised(coat, beyond, sine, across)
+    if random(state) < near:
+        return False
+    while random(state) < far:
+        if random(state) >= near:
+            return False
+    return True
+
+
+@njit(cache=True)
+def _at_face(normal, dx, dy, dz, inside, side, eta, state, coat=0.0):
+    """The way on of a walk that meets a face, mirrored or refracted by chance, and whether it goes through.
+
+    coat: index of refraction of a coat on the face, 0 for none.
+    """
     nx, ny, nz = normal
     cosine = min(abs(dx * nx + dy * ny + dz * nz), 1.0)
     ratio = eta if inside else 1 / eta
     reflected, beyond = fresnel(cosine, ratio)
+    if coat > 0:
+        reflected = 0.0 if _through_coat(cosine, eta, coat, inside, state) else 1.0
     if random(state) < reflected:
         dx, dy, dz = _bent(dx, dy, dz, nx, ny, nz, 1.0, -2 * side * cosine)
         return dx, dy, dz, False
@@ -176,10 +206,11 @@ def _leave(tally, at, weight, scattered, fresh):
 
 
 @njit(cache=True, nogil=True)
-def follow(tree, near, volume, eta, patch, origins, ways, again, seed, tally):
+def follow(tree, near, volume, eta, coat, patch, origins, ways, again, seed, tally):
     """Follow light from outside, origins and unit ways (n, 3), each of weight 1, until it is gone.
 
-    eta, patch (f,): index of refraction behind each triangle of the mesh, inside over outside, and its patch; again:
+    eta, patch (f,): index of refraction behind each triangle of the mesh, inside over outside, and its patch; coat:
+    index of a coat on all of it, 0 for none; again:
     whether what leaves or is reflected outside is followed; tally: is added to.
     """
     state = np.array([seed], np.uint64)
@@ -209,7 +240,8 @@ def follow(tree, near, volume, eta, patch, origins, ways, again, seed, tally):
                     dx, dy, dz = _isotropic(state)
                 continue
             met, tally.rest[2] = True, tally.rest[2] + (0 if met else 1)
-            dx, dy, dz, through = _at_face(tree.normal[face], dx, dy, dz, inside, side, eta[tree.number[face]], state)
+            own = eta[tree.number[face]]
+            dx, dy, dz, through = _at_face(tree.normal[face], dx, dy, dz, inside, side, own, state, coat)
             if not through:
                 if inside or again:
                     continue
