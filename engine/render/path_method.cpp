@@ -101,6 +101,7 @@ void PathMethod::light(const DisplayBuffers& mesh, const ShadowMaps& shadows, co
   Parts& own = *parts_;
   const std::uint32_t stripes = Voxels::stripes({mesh.vertices, mesh.triangles, 0, mesh.triangle_count});
   const gpu::PathEnterPush push{.grid = own.voxels.grid(),
+                                .triangle_count = mesh.triangle_count,
                                 .vertices = mesh.vertices.address(),
                                 .triangles = mesh.triangles.address(),
                                 .flags = own.voxels.cells().flags.address(),
@@ -108,10 +109,11 @@ void PathMethod::light(const DisplayBuffers& mesh, const ShadowMaps& shadows, co
                                 .lights = shadows.lights().address(),
                                 .shapes = shadows.shapes().address(),
                                 .views = shadows.views().address(),
-                                .triangle_count = mesh.triangle_count,
                                 .stripes = stripes,
                                 .light_count = shadows.light_count(),
-                                .surface = single_precision(surface),
+                                .eta = static_cast<float>(surface.eta),
+                                .coat_eta = surface.coat.eta,
+                                .coat = surface.coat.share,
                                 .diffuse_transmittance = static_cast<float>(diffuse_transmittance(surface)),
                                 .tools = tools()};
   run_pass(

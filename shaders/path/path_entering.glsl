@@ -34,7 +34,8 @@ float share_seen(Lamp lamp, vec3 position, vec3 normal) {
 vec3 entering_from(uint number, vec3 position, vec3 normal) {
   LightRecord light = push.lights.at[number];
   if (light.kind == LIGHT_AMBIENT) return push.diffuse_transmittance * light.power;
-  Lamp lamp = Lamp(light, no_shape(), 0u, push.grid.cell, push.surface, upright(normal));
+  OpticalSurface surface = OpticalSurface(push.eta, push.coat_eta, push.coat, 0.0);
+  Lamp lamp = Lamp(light, no_shape(), 0u, push.grid.cell, surface, upright(normal));
   if (SHAPED) lamp.shape = push.shapes.at[number];
   if (SHAPED && light.kind == LIGHT_ENVIRONMENT) {
     return environment_at(lamp.shape, ENVIRONMENT_ENTERING, normal) * light.power;

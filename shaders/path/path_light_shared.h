@@ -5,7 +5,6 @@
 
 #include "light/render_shared.h"
 #include "path/path_shared.h"
-#include "shared/optical_surface.h"
 
 #ifdef __cplusplus
 namespace quadgraph::gpu {
@@ -15,6 +14,7 @@ namespace quadgraph::gpu {
 // their middles, the most, per channel.
 struct PathEnterPush {
   PathGrid grid;
+  uint triangle_count;
   QG_REF(Vec3s) vertices;  // mm
   QG_REF(Uvec3s) triangles;
   QG_REF(Uints) flags;
@@ -22,10 +22,9 @@ struct PathEnterPush {
   QG_REF(LightRecords) lights;
   QG_REF(LightShapes) shapes;  // per light
   QG_REF(ShadowViews) views;
-  uint triangle_count;
   uint stripes;  // invocations per triangle and axis
   uint light_count;
-  OpticalSurface surface;
+  float eta, coat_eta, coat;  // as of OpticalSurface
   float diffuse_transmittance;  // of a smooth surface under uniform illumination from outside
   PathTools tools;  // where there are any, cells hide the light and not shadow maps, which know nothing of them
 };
