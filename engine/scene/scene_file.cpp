@@ -204,6 +204,21 @@ void SceneFile::leave_out_tracks_of(const std::string& pointer) {
   }
 }
 
+SceneFile SceneFile::with(const Scene& scene) const {
+  Json document = to_json(scene);
+  each_file(document, [](const std::filesystem::path& file) { return std::filesystem::absolute(file); });
+  const Json first = to_json(at(0));
+  std::vector<std::string> kept{"frames", "frames_per_second", "tracks"};
+  for (const Track& track : tracks_) {
+    const std::string member(split(track.target(), '/').at(1));
+    if (member == "camera" || first[member] == document[member]) kept.push_back(member);
+  }
+  for (const std::string& member : kept) {
+    if (document_.contains(member)) document[member] = document_[member];
+  }
+  return {std::move(document), path_};
+}
+
 Scene SceneFile::at(double frame) const {
   Json document = still_;
   for (const Track& track : tracks_) track.apply(frame, document);

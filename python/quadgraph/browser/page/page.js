@@ -46,6 +46,7 @@ function hear(message) {
   if (message.rings) hearRings(message.rings);
   if (message.painted) painted(message.painted);
   if (message.layered) layered(message.layered);
+  if (message.film) hearFilm(message.film);
   if (message.refused) {
     stroke = null;
     trouble(message.refused);
@@ -302,6 +303,7 @@ function listen() {
     link.click();
   });
   showSaving([]);
+  listenFilm();
   let resized = 0;
   addEventListener("resize", () => {
     clearTimeout(resized);
@@ -309,7 +311,7 @@ function listen() {
   });
 }
 
-// Once brush.js is there, too.
+// Once the other scripts are there, too.
 addEventListener("DOMContentLoaded", () => {
   gestures();
   listen();
