@@ -1,14 +1,11 @@
 #include "engine/app/film.h"
 
-#include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <sstream>
 
 #include "engine/base/error.h"
 #include "engine/base/json_text.h"
 #include "engine/base/regular_file.h"
-#include "engine/base/text.h"
 #include "engine/scene/json_field.h"
 
 namespace quadgraph {
@@ -24,16 +21,6 @@ constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQR
 const char* turn_name(FilmOf of) {
   if (of == FilmOf::body) return "body";
   return of == FilmOf::light ? "light" : "camera";
-}
-
-std::string text_of(const std::filesystem::path& path) {
-  if (bytes_of_regular_file(path) > most_bytes) {
-    throw InputError(path.string() + ": larger than the " + std::to_string(most_bytes) + " bytes of progress");
-  }
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  if (!file || !(text << file.rdbuf())) throw InputError(path.string() + ": cannot be read");
-  return text.str();
 }
 
 }  // namespace
@@ -74,7 +61,7 @@ std::string shell_text(const std::vector<std::string>& words) {
 std::optional<FilmProgress> read_film_progress(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path)) return std::nullopt;
   try {
-    const Json document = parse_json(text_of(path));
+    const Json document = parse_json(text_of_regular_file(path, most_bytes, "progress"));
     const JsonField field(document, "");
     field.allow({"done", "frames", "seconds_left"});
     FilmProgress progress;
