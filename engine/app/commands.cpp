@@ -164,6 +164,7 @@ constexpr auto table = std::to_array<Command>({
     {"Ctrl+S", GLFW_KEY_S, 0, control, "save the scene as JSON", [](S s, W) { s.save = true; }},
     {"Tab", GLFW_KEY_TAB, 0, 0, "keyboard focus to the panel (arrows, Space, Enter); Esc returns it",
      [](S s, W) { s.focus_panel = s.panel = true; }},
+    {"F9", GLFW_KEY_F9, 0, 0, "save a film, as the section Film says", [](S s, W) { s.save_film = true; }},
     {"F10", GLFW_KEY_F10, 0, 0, "show or hide the panel", [](S s, W) { s.panel = !s.panel; }},
     {"F11", GLFW_KEY_F11, 0, 0, "toggle full screen", [](S s, W) { s.full_screen = true; }},
     {"F12", GLFW_KEY_F12, 0, 0, "save the image as PNG and EXR", [](S s, W) { s.screenshot = true; }},

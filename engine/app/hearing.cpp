@@ -39,18 +39,23 @@ void Viewer::fulfil_wishes() {
   if (state_.undo) state_.scene = history_.undo(state_.scene);
   if (state_.redo) state_.scene = history_.redo(state_.scene);
   if (state_.save || state_.save_first) save_scene();
+  if (state_.save_film) save_film();
+  if (state_.cancel_film) cancel_film();
+  follow_film();
   keep_active(state_.scene, state_.layer);
   keep_method(state_);
   leave_or_ask();
-  state_.full_screen = state_.save = state_.undo = state_.redo = false;
+  state_.full_screen = state_.save = state_.undo = state_.redo = state_.save_film = state_.cancel_film = false;
 }
 
-// Ends, or opens another file, where that is wanted and nothing is lost by it. What is opened waits for the engine.
+// Ends, or opens another file, where that is wanted and nothing is lost by it: no change, and no film that is being
+// made. What is opened waits for the engine.
 void Viewer::leave_or_ask() {
   state_.quit = state_.quit || window_.closing();
   window_.keep_open();
   if (!state_.quit && state_.opening.empty()) return;
-  state_.asks = replaces_work() && !state_.discard && !same_work(state_.scene, saved_);
+  state_.unsaved = replaces_work() && !same_work(state_.scene, saved_);
+  state_.asks = !state_.discard && (state_.unsaved || (state_.quit && film_));
   leaving_ = state_.quit && !state_.asks;
 }
 
@@ -62,6 +67,7 @@ bool Viewer::replaces_work() const {
 // half_way: amid a piece of work, which is then lost.
 void Viewer::hear(bool half_way) {
   window_.poll(0);
+  follow_film();
   const bool wanted = window_.events_wait() || frames_wanted_ > 0;
   if (Clock::now() - answered_ >= answer_pause && wanted) {
     const std::vector<Event> events = take_events();

@@ -112,7 +112,7 @@ void Viewer::handle_key(const KeyEvent& event) {
 
 // Of whether to save before it ends.
 void Viewer::answer_question(int key) {
-  if (key == GLFW_KEY_S || key == GLFW_KEY_ENTER) state_.save_first = true;
+  if (state_.unsaved && (key == GLFW_KEY_S || key == GLFW_KEY_ENTER)) state_.save_first = true;
   if (key == GLFW_KEY_D) state_.discard = true;
   if (key == GLFW_KEY_ESCAPE) state_.keep();
 }

@@ -142,4 +142,22 @@ void draw_camera(State& state, const Sphere& bounds) {
   if (view != shown) state.scene.view = view;
 }
 
+// What a film shows that is saved.
+void draw_film_choice(State& state) {
+  if (!section("Film", false)) return;
+  FilmChoice& film = state.film;
+  auto of = static_cast<std::size_t>(film.of);
+  if (choose("Shows", of, film_names(state.has_frames))) film.of = static_cast<FilmOf>(of);
+  if (film.of != FilmOf::frames) {
+    for (const int seconds : film_seconds) {
+      if (ImGui::RadioButton((std::to_string(seconds) + " s").c_str(), film.seconds == seconds)) film.seconds = seconds;
+      ImGui::SameLine();
+    }
+    ImGui::TextDisabled("for a turn");
+  }
+  if (ImGui::RadioButton(".mp4", !film.gif)) film.gif = false;
+  ImGui::SameLine();
+  if (ImGui::RadioButton(".gif", film.gif)) film.gif = true;
+}
+
 }  // namespace quadgraph

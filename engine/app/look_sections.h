@@ -7,6 +7,7 @@ namespace quadgraph {
 
 void draw_file(State& state);
 void draw_shape(State& state, const Measured& measured);
+void draw_film_choice(State& state);
 void draw_camera(State& state, const Sphere& bounds);
 void draw_picture(State& state, const Measured& measured);
 

@@ -1,10 +1,11 @@
 // What the viewer opens: files whose names are typed, or that are dropped onto the window.
 #include <spawn.h>
+#include <sys/wait.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <csignal>
+#include <thread>
 
 #include "engine/app/environment_section.h"
 #include "engine/app/panel_widgets.h"
@@ -33,9 +34,8 @@ std::string suffix_of(const std::filesystem::path& file) {
   return suffix;
 }
 
-// What a scene file shows first, or another body under the light that is there.
-Scene opened(const std::filesystem::path& file, const Scene& before) {
-  if (suffix_of(file) == ".json") return SceneFile::load(file).at(0);
+// Another body under the light that is there.
+Scene with_body(const std::filesystem::path& file, const Scene& before) {
   Scene scene = before;
   scene.body = file;
   scene.layers.clear();
@@ -53,13 +53,13 @@ void view_mesh(const std::filesystem::path& mesh, float longest_mm) {
   std::string words[] = {"quadgraph", "view", "--longest", size, mesh.string()};
   std::array<char*, std::size(words) + 1> arguments{};
   for (std::size_t i = 0; i < std::size(words); ++i) arguments[i] = words[i].data();
-  std::signal(SIGCHLD, SIG_IGN);  // it ends by itself
   pid_t child = 0;
   if (posix_spawnp(&child, "quadgraph", nullptr, nullptr, arguments.data(), environ) != 0) {
     throw InputError(mesh.string() +
                      ": a mesh is baked by quadgraph, which is not on the PATH; there run: quadgraph view " +
                      "--longest " + size + " " + mesh.string());
   }
+  std::thread([child] { waitpid(child, nullptr, 0); }).detach();  // it ends by itself
 }
 
 }  // namespace
@@ -75,8 +75,12 @@ void Viewer::open_file(const std::filesystem::path& file) {
     } else if (among(skies, suffix)) {
       put_environment(state_.scene, file.string(), engine().bounds());
       state_.say("");
-    } else if (suffix == ".qgraph" || suffix == ".json") {
-      show_opened(opened(file, state_.scene));
+    } else if (suffix == ".qgraph") {
+      show_opened(with_body(file, state_.scene), std::nullopt);
+      window_.set_name(file.filename().string());
+    } else if (suffix == ".json") {
+      const SceneFile scenes = SceneFile::load(file);
+      show_opened(scenes.at(0), scenes.frames() > 1 ? std::optional(scenes) : std::nullopt);
       window_.set_name(file.filename().string());
     } else {
       throw InputError(file.string() + ": found '" + suffix +
@@ -93,7 +97,7 @@ void Viewer::open_file(const std::filesystem::path& file) {
 }
 
 // In the place of what is shown, which comes back where it cannot be shown.
-void Viewer::show_opened(const Scene& scene) {
+void Viewer::show_opened(const Scene& scene, const std::optional<SceneFile>& frames) {
   const Scene before = state_.scene;
   const auto show = [&](const Scene& wanted) {
     forget_convergence();
@@ -120,6 +124,9 @@ void Viewer::show_opened(const Scene& scene) {
   state_.brush = Brush::for_body(engine().bounds().radius);
   take_up_body();
   saving_.stem.replace_filename(scene.body.stem());
+  saving_.frames = frames;
+  state_.has_frames = frames.has_value();
+  if (!frames && state_.film.of == FilmOf::frames) state_.film.of = FilmOf::camera;
   history_ = History(state_.scene);
   saved_ = state_.scene;
   changed_ = Clock::now();

@@ -54,7 +54,7 @@ void declare(CLI::App& app, Typed& typed) {
   app.add_option(
          "-o,--output", typed.output,
          "with --headless the picture to write: .png (sRGB) or .exr (linear, layers); in a window the beginning "
-         "of the names of those that F12 writes (default: that of the file)")
+         "of the names of those that F12 writes, and of films (F9) and scenes (default: that of the file)")
       ->group(std::string(picture_group));
   for (const SceneOption& option : scene_options()) {
     if (!option.on_command_line) continue;
@@ -105,12 +105,15 @@ void apply(const Typed& typed, const CLI::App& app, Scene& scene) {
   }
 }
 
-Scene scene_of(const Typed& typed, const CLI::App& app) {
+// The scene that is typed; `opened` becomes the file that it is of, where that has frames of its own.
+Scene scene_of(const Typed& typed, const CLI::App& app, std::optional<SceneFile>& opened) {
   const std::filesystem::path file = typed.file;
   const bool from_file = file.extension() == ".json";
   Scene scene;
   if (from_file) {
-    scene = SceneFile::load(file).at(0);
+    opened = SceneFile::load(file);
+    scene = opened->at(0);
+    if (opened->frames() < 2) opened.reset();
   } else {
     scene.body = file;
     scene.render.ground = !typed.headless;
@@ -146,7 +149,7 @@ AppOptions understood(const Typed& typed, const CLI::App& app) {
   options.headless = typed.headless;
   options.output = typed.output;
   if (options.headless) check_output(options);
-  options.scene = scene_of(typed, app);
+  options.scene = scene_of(typed, app, options.file);
   if (options.headless) {
     std::vector<std::string> inputs = texts_of(options.scene);
     inputs.push_back(typed.file);

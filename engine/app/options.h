@@ -4,12 +4,13 @@
 #include <filesystem>
 #include <optional>
 
-#include "engine/scene/scene.h"
+#include "engine/scene/scene_file.h"
 
 namespace quadgraph {
 
 struct AppOptions {
   Scene scene;                    // with lights
+  std::optional<SceneFile> file;  // that it is of, where that has frames of its own
   bool headless = false;          // a picture, and no window
   std::filesystem::path output;   // headless: .png or .exr; else what pictures that the user asks for are called
   std::filesystem::path preview;  // the body is one, and this file says what becomes of it; else empty

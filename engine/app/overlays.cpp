@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "engine/app/commands.h"
+#include "engine/app/panel_widgets.h"
 #include "engine/render/picture/tone_map.h"
 #include "shaders/display/colour_map.h"
 
@@ -116,17 +117,36 @@ void draw_message(const State& state, float left, float unit, float above) {
   draw_note("message", state.message, colour, true, left, ImGui::GetIO().DisplaySize.y - 12 * unit - above, unit);
 }
 
+void draw_film(State& state, float unit) {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({size.x - 12 * unit, 12 * unit}, ImGuiCond_Always, {1, 0});
+  ImGui::SetNextWindowBgAlpha(0.85f);
+  ImGui::Begin("film", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing);
+  ImGui::TextUnformatted(state.film_text.c_str());
+  ImGui::ProgressBar(state.film_share, {200 * unit, 6 * unit}, "");
+  if (button("Cancel film##beside", true, false)) state.cancel_film = true;
+  ImGui::End();
+}
+
 void draw_question(State& state, float unit) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({0.5f * size.x, 0.4f * size.y}, ImGuiCond_Always, {0.5f, 0.5f});
   ImGui::SetNextWindowFocus();
-  ImGui::Begin("Save the scene first?", nullptr,
+  ImGui::Begin(state.unsaved ? "Save the scene first?" : "End the film?", nullptr,
                ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove);
-  ImGui::TextUnformatted("What was changed since the scene was opened or saved is lost otherwise.");
+  if (state.unsaved) {
+    ImGui::TextUnformatted("What was changed since the scene was opened or saved is lost otherwise.");
+  }
+  if (state.filming && state.quit) {
+    ImGui::TextUnformatted("The film that is being made ends with the window, and nothing of it stays.");
+  }
   ImGui::Dummy({0, 4 * unit});
-  if (ImGui::Button("Save scene (S)")) state.save_first = true;
-  ImGui::SameLine();
-  if (ImGui::Button("Discard (D)")) state.discard = true;
+  if (state.unsaved) {
+    if (ImGui::Button("Save scene (S)")) state.save_first = true;
+    ImGui::SameLine();
+  }
+  if (ImGui::Button(state.unsaved ? "Discard (D)" : "End the film (D)")) state.discard = true;
   ImGui::SameLine();
   if (ImGui::Button("Cancel (Esc)")) state.keep();
   ImGui::End();

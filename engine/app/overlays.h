@@ -23,6 +23,9 @@ void draw_convergence(const std::string& text, float left, float unit);
 // The last thing to tell the user, in the picture's lower left corner, `above` what lies there.
 void draw_message(const State& state, float left, float unit, float above);
 
+// How far the film is that is being made, in the picture's upper right corner, with a button that ends it.
+void draw_film(State& state, float unit);
+
 // Whether to save before the window closes, in the middle.
 void draw_question(State& state, float unit);
 

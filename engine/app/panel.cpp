@@ -34,13 +34,14 @@ void draw_modes(State& state) {
 
 void draw_buttons(State& state) {
   if (button("Save image", true, false)) state.screenshot = true;
+  if (button(state.filming ? "Cancel film" : "Save film")) (state.filming ? state.cancel_film : state.save_film) = true;
   if (button("Save scene")) state.save = true;
-  if (button("Full screen")) state.full_screen = true;
   if (button("Undo", state.can_undo, false)) state.undo = true;
   if (button("Redo", state.can_redo)) state.redo = true;
   button("Before", state.can_undo);
   state.compares_by_button = ImGui::IsItemActive();
   if (button("Shortcuts")) state.help = !state.help;
+  if (button("Full screen")) state.full_screen = true;
   ImGui::Checkbox("Turntable", &state.turntable);
 }
 
@@ -61,6 +62,7 @@ void draw_sections(State& state, const PanelFacts& facts) {
   draw_shape(state, facts.measured);
   draw_picture(state, facts.measured);
   draw_camera(state, bounds);
+  draw_film_choice(state);
   if (state.lab) draw_passes(facts.measured.passes);
 }
 

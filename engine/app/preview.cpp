@@ -1,8 +1,5 @@
 #include "engine/app/preview.h"
 
-#include <fstream>
-#include <sstream>
-
 #include "engine/base/error.h"
 #include "engine/base/json_text.h"
 #include "engine/base/regular_file.h"
@@ -16,14 +13,9 @@ constexpr std::uintmax_t most_bytes = 65536;  // of news
 
 std::optional<News> read_news(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path)) return std::nullopt;
-  if (bytes_of_regular_file(path) > most_bytes) {
-    throw InputError(path.string() + ": larger than the " + std::to_string(most_bytes) + " bytes of news");
-  }
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  if (!file || !(text << file.rdbuf())) throw InputError(path.string() + ": cannot be read");
+  const std::string text = text_of_regular_file(path, most_bytes, "news");
   try {
-    const Json document = parse_json(text.str());
+    const Json document = parse_json(text);
     const JsonField field(document, "");
     field.allow({"body", "progress", "failed"});
     News news;

@@ -48,7 +48,7 @@ int show_window(const AppOptions& options) {
   stage.show(preview ? Preview::before(options.scene) : options.scene);
   {
     const std::filesystem::path stem = options.output.empty() ? name.stem() : options.output;
-    Viewer(window, *presenter, stage, {stem, options.copy_body}, preview).run();
+    Viewer(window, *presenter, stage, {stem, options.copy_body, options.file}, preview).run();
   }
   refuse_messages(*presenter);
   return EXIT_SUCCESS;

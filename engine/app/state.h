@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/app/film.h"
 #include "engine/render/engine.h"
 #include "engine/scene/brush.h"
 #include "engine/scene/scene.h"
@@ -72,13 +73,20 @@ struct State {
   bool lab = false;                                          // the panel has all, else what is looked at
   bool turntable = false;                                    // the body turns
   bool compares_by_key = false, compares_by_button = false;  // what was before the last step is shown
-  bool asks = false;                                         // whether to save what was changed, before it ends
-  std::string preview;   // what is shown in the place of the body, empty where it is the body
-  std::string message;   // the last thing to tell the user
-  bool refused = false;  // it is a complaint
+  bool asks = false;                                         // whether to end, before something is lost by it
+  bool unsaved = false;  // what was changed since it was opened or saved is lost then
+  FilmChoice film;
+  bool has_frames = false;  // the scene that was opened has some of its own
+  bool filming = false;     // a film is being made
+  std::string film_text;    // how far it is,
+  float film_share = 0;     // of its frames
+  std::string preview;      // what is shown in the place of the body, empty where it is the body
+  std::string message;      // the last thing to tell the user
+  bool refused = false;     // it is a complaint
 
   // Wishes that the viewer fulfils.
   bool focus_panel = false, focus_picture = false;
+  bool save_film = false, cancel_film = false;
   bool screenshot = false, save = false, undo = false, redo = false, full_screen = false;
   std::filesystem::path opening;             // asks first too
   bool quit = false;                         // asks first where something was changed

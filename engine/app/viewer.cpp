@@ -17,7 +17,7 @@ namespace {
 
 constexpr double budget_ms = 90;       // of a picture in motion: ten a second
 constexpr double idle_wait = 0.5;      // seconds between frames where only a blinking cursor or the like changes
-constexpr double news_wait = 0.1;      // seconds, while a body is being baked
+constexpr double news_wait = 0.1;      // seconds, while a body is being baked, or a film made
 constexpr float turntable_speed = 24;  // degrees a second: once in a quarter of a minute
 constexpr float longest_step = 0.25f;  // seconds that it goes on by at once, however long a picture takes
 
@@ -38,6 +38,7 @@ Viewer::Viewer(Window& window, vk::Context& presenter, Stage& stage, Saving savi
   state_.scene = stage.scene();
   state_.layer = topmost(state_.scene);
   take_up_body();
+  state_.has_frames = saving_.frames.has_value();
   if (preview_) state_.preview = preview_->label();
   state_.brush = Brush::for_body(engine().bounds().radius);
   listen();
@@ -73,14 +74,14 @@ void Viewer::run() {
   }
 }
 
-// The body goes round while the turntable is on.
+// The camera goes round while the turntable is on, as in a film.
 void Viewer::turn() {
   const Clock::time_point now = Clock::now();
   const std::chrono::duration<float> since = now - std::exchange(turned_, now);
   if (!state_.turntable || dragging_) return;
   const float degrees = turntable_speed * std::min(since.count(), longest_step);
   const CommandContext context = command_context();
-  state_.scene.view = orbited(state_.scene.view, context.bounds, context.aspect, degrees, 0);
+  state_.scene.view = orbited(state_.scene.view, context.bounds, context.aspect, -degrees, 0);
 }
 
 // Seconds that nothing need happen for.
@@ -89,7 +90,7 @@ double Viewer::patience() const {
   if (swapchain_.width() == 0) return idle_wait;
   const bool goes_on = state_.turntable || (measured_.frames > 0 && !measured_.settled);
   if (!shown_ || part() != shown_part_ || (goes_on && !dragging_) || converges()) return 0;
-  if (preview_ && !preview_->failed()) return news_wait;
+  if (film_ || (preview_ && !preview_->failed())) return news_wait;
   return measured_.settled ? idle_wait : 0.5 * settle_after;
 }
 
@@ -133,6 +134,7 @@ void Viewer::build_widgets(const std::vector<Event>& events) {
   draw_outline(chosen_outline(), left, interface_.unit());
   draw_knife(state_.knife, left, interface_.unit());
   if (state_.compares()) draw_convergence("Before the last change", left, interface_.unit());
+  if (state_.filming) draw_film(state_, interface_.unit());
   if (state_.asks) draw_question(state_, interface_.unit());
   keep_method(state_);
   if (!dragging_ && !ImGui::IsAnyItemActive()) history_.note(state_.scene);

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "engine/app/commands.h"
+#include "engine/app/film_making.h"
 #include "engine/app/history.h"
 #include "engine/app/interface.h"
 #include "engine/app/pace.h"
@@ -22,8 +23,9 @@ namespace quadgraph {
 
 // What the user saves from a window.
 struct Saving {
-  std::filesystem::path stem;  // file name of pictures and scenes, without number and extension
-  bool copy_body = false;      // the body does not stay where it is: scenes get a copy beside them (body_copy.h)
+  std::filesystem::path stem;       // file name of pictures, films and scenes, without number and extension
+  bool copy_body = false;           // the body does not stay where it is: scenes get a copy beside them (body_copy.h)
+  std::optional<SceneFile> frames;  // the file that was opened, where it has frames of its own
 };
 
 class Viewer {
@@ -103,11 +105,16 @@ class Viewer {
   void show(const device::Buffer& pixels);
   void measure(Clock::time_point start, double draw_ms, bool gathered);
   void save_scene();
+  SceneFile filmed_scene() const;
+  void save_film();
+  void follow_film();
+  void cancel_film();
+  void tell_film();
   void leave_or_ask();
   bool replaces_work() const;
   bool opens() const { return !state_.opening.empty() && !state_.asks; }
   void open_file(const std::filesystem::path& file);
-  void show_opened(const Scene& scene);
+  void show_opened(const Scene& scene, const std::optional<SceneFile>& frames);
   Scene wanted_scene() const;
   void turn();
   void present();
@@ -123,7 +130,8 @@ class Viewer {
   Pace pace_;
   Saving saving_;
   std::optional<Preview> preview_;  // what is shown, until it is changed for the baked body
-  std::uint32_t pictures_written_ = 0, scenes_written_ = 0;
+  std::uint32_t pictures_written_ = 0, scenes_written_ = 0, films_written_ = 0;
+  std::optional<FilmMaking> film_;  // that is being made
   Picker picker_;
   State state_;
   History history_;

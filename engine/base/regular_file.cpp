@@ -1,5 +1,7 @@
 #include "engine/base/regular_file.h"
 
+#include <fstream>
+#include <sstream>
 #include <string>
 #include <system_error>
 
@@ -18,6 +20,17 @@ std::uintmax_t bytes_of_regular_file(const std::filesystem::path& path) {
   const std::uintmax_t bytes = std::filesystem::file_size(path, error);
   if (error) refuse(error.message());
   return bytes;
+}
+
+std::string text_of_regular_file(const std::filesystem::path& path, std::uintmax_t allowed, const std::string& what) {
+  if (bytes_of_regular_file(path) > allowed) {
+    throw InputError(path.string() + ": larger than the " + std::to_string(allowed) + " bytes that are allowed of " +
+                     what);
+  }
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  if (!file || !(text << file.rdbuf())) throw InputError(path.string() + ": cannot be read");
+  return text.str();
 }
 
 }  // namespace quadgraph

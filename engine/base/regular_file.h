@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 
 namespace quadgraph {
 
@@ -10,5 +11,8 @@ namespace quadgraph {
 // at (a loop of links, a folder without the right), or if it is something else: nobody may ever write the end of a
 // pipe.
 std::uintmax_t bytes_of_regular_file(const std::filesystem::path& path);
+
+// The text of a regular file. Throws InputError as above, and where it has more bytes than are allowed of `what` it is.
+std::string text_of_regular_file(const std::filesystem::path& path, std::uintmax_t allowed, const std::string& what);
 
 }  // namespace quadgraph

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <sstream>
 
 #include "engine/base/atomic_file.h"
 #include "engine/base/json_text.h"
@@ -26,16 +25,6 @@ Json parsed(const std::string& text, const std::filesystem::path& path) {
   } catch (const InputError& error) {
     throw InputError(path.string() + ": " + error.what());
   }
-}
-
-std::string content(const std::filesystem::path& path) {
-  if (bytes_of_regular_file(path) > json_bytes) {
-    throw InputError(path.string() + ": larger than the " + std::to_string(json_bytes) + " bytes that are allowed");
-  }
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  if (!file || !(text << file.rdbuf())) throw InputError(path.string() + ": cannot be read");
-  return text.str();
 }
 
 // The member of that name, if it is a text.
@@ -118,7 +107,7 @@ SceneFile::SceneFile(Json document, std::filesystem::path path)
 SceneFile::SceneFile(const Scene& scene) : SceneFile(to_json(scene), {}) {}
 
 SceneFile SceneFile::load(const std::filesystem::path& path) {
-  return parse(content(path), path);
+  return parse(text_of_regular_file(path, json_bytes, "a scene"), path);
 }
 
 SceneFile SceneFile::parse(const std::string& text, const std::filesystem::path& path) {
@@ -202,6 +191,21 @@ void SceneFile::leave_out_tracks_of(const std::string& pointer) {
                        ", in every frame; change it there, at /tracks/" + std::to_string(k));
     }
   }
+}
+
+SceneFile SceneFile::with(const Scene& scene) const {
+  Json document = to_json(scene);
+  each_file(document, [](const std::filesystem::path& file) { return std::filesystem::absolute(file); });
+  const Json first = to_json(at(0));
+  std::vector<std::string> kept{"frames", "frames_per_second", "tracks"};
+  for (const Track& track : tracks_) {
+    const std::string member(split(track.target(), '/').at(1));
+    if (member == "camera" || first[member] == document[member]) kept.push_back(member);
+  }
+  for (const std::string& member : kept) {
+    if (document_.contains(member)) document[member] = document_[member];
+  }
+  return {std::move(document), path_};
 }
 
 Scene SceneFile::at(double frame) const {

@@ -35,6 +35,10 @@ class SceneFile {
   // or a track changes all of what the value is part of.
   void set(const std::string& pointer, const std::string& value);
 
+  // The same frames of another scene: its tracks change that one's values. A camera that they move is that of the file,
+  // wherever the other one looks from. Throws InputError where a track finds no place in the other scene.
+  SceneFile with(const Scene& scene) const;
+
   std::uint32_t frames() const { return frames_; }
   double frames_per_second() const { return frames_per_second_; }
 

@@ -14,6 +14,7 @@ import io
 import json
 import secrets
 import threading
+from collections.abc import Mapping
 from importlib import resources
 from typing import TYPE_CHECKING, Any
 
@@ -22,6 +23,8 @@ import numpy.typing as npt
 
 from quadgraph.base.errors import InputError
 from quadgraph.base.optional_package import optional_package
+from quadgraph.browser.film_desk import FilmDesk
+from quadgraph.browser.films import Films
 from quadgraph.browser.frame_loop import ShownFrame
 from quadgraph.browser.inbox import Inbox, Message
 from quadgraph.browser.stamps import MOST_SENT_BYTES, Stamps, scene_text
@@ -32,7 +35,7 @@ if TYPE_CHECKING:
 MOST_PAGES = 8
 MOST_BYTES = 1 << 16  # of a message
 _SHOWN_S = 5.0  # after which a page that has not said that it shows a frame gets the next
-_SCRIPTS = ("page.js", "brush.js", "stamps.js")
+_SCRIPTS = ("page.js", "brush.js", "stamps.js", "film.js")
 _FILES = {**dict.fromkeys(_SCRIPTS, "text/javascript"), "page.css": "text/css"}
 # The token stands in the address: it must not leave with a link, or stay in a cache.
 _HEADERS = {
@@ -76,9 +79,9 @@ class Page:
 class Server:
     """Serves the page and its frames while it is open. Use it in a `with` block."""
 
-    def __init__(self, host: str, port: int, token: str, hello: dict[str, Any], stamps: Stamps) -> None:
+    def __init__(self, host: str, port: int, token: str, hello: dict[str, Any], stamps: Stamps, films: Films) -> None:
         """Take a place to listen at, 0 for any free port; hello: what a page is told at first; stamps: what takes the
-        images that pages send.
+        images that pages send; films: what makes those that they ask for.
 
         Raises InputError where the package is not there.
         """
@@ -92,6 +95,7 @@ class Server:
         self._started: threading.Event = threading.Event()
         self._trouble: OSError | None = None
         self._thread = threading.Thread(target=self._run, name="quadgraph-serve", daemon=True)
+        self._desk = FilmDesk(films, self._tell_all)
         self._telling: set[asyncio.Task[None]] = set()
         self._at_rest: npt.NDArray[np.uint8] | None = None
         self.frame: ShownFrame | None = None
@@ -149,6 +153,7 @@ class Server:
         application.router.add_get("/scene.json", self._scene)
         application.router.add_get("/scene.zip", self._bundle)
         application.router.add_get("/picture.png", self._picture)
+        application.router.add_get("/film", self._film)
         application.router.add_post("/stamp", self._stamp)
         for name in _FILES:
             application.router.add_get(f"/{name}", self._file)
@@ -244,6 +249,9 @@ class Server:
         headers = {**_HEADERS, "Content-Disposition": 'attachment; filename="picture.png"'}
         return web.Response(body=png, content_type="image/png", headers=headers)
 
+    async def _film(self, request: web.Request) -> web.StreamResponse:
+        return await self._desk.file(_HEADERS) if self._knows(request) else self._refused()
+
     async def _live(self, request: web.Request) -> web.StreamResponse:
         from aiohttp import WSMsgType, web
 
@@ -257,6 +265,7 @@ class Server:
         page = Page(socket)
         self._pages.add(page)
         await socket.send_json({"hello": self._hello | {"images": self._stamps.names}})
+        await socket.send_json(self._desk.said)
         page.news.set()
         sender = asyncio.create_task(page.send_frames(self))
         try:
@@ -278,21 +287,30 @@ class Server:
             await page.socket.send_json({"pong": said["ping"]})
         elif "shown" in said:
             page.shown.set()
+        elif "film" in said:
+            try:
+                await self._desk.hear(said["film"], self.frame.scene if self.frame else None)
+            except InputError as error:
+                await page.socket.send_json({"refused": str(error)})
         elif self._inbox is not None:
             self._inbox.put(Message(said, lambda answer: self._answer(page, dict(answer))))
 
     def _answer(self, page: Page, answer: dict[str, Any]) -> None:
         """Tell one page something; from any thread."""
+        self._loop.call_soon_threadsafe(lambda: self._tell(page, answer))
 
+    def _tell_all(self, said: Mapping[str, Any]) -> None:
+        """Tell all pages something; from the server's thread."""
+        for page in self._pages:
+            self._tell(page, said)
+
+    def _tell(self, page: Page, said: Mapping[str, Any]) -> None:
         async def tell() -> None:
             if not page.socket.closed:
-                await page.socket.send_json(answer)
+                await page.socket.send_json(said)
 
-        def begin() -> None:
-            self._telling.add(task := self._loop.create_task(tell()))
-            task.add_done_callback(self._telling.discard)
-
-        self._loop.call_soon_threadsafe(begin)
+        self._telling.add(task := self._loop.create_task(tell()))
+        task.add_done_callback(self._telling.discard)
 
 
 def _object_in(text: str) -> dict[str, Any] | None:

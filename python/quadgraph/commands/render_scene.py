@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import time
-from collections.abc import Iterable
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,6 +17,7 @@ from quadgraph.base.errors import InputError
 from quadgraph.commands import (
     converging,
     frame_output,
+    frame_progress,
     picture_output,
     scene_file,
     scene_options,
@@ -53,6 +54,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="render the first N, without N all of the scene, into a numbered OUT, e.g. frames/%%04d.png, .jpg or "
         ".exr, or a film, e.g. turn.mp4 or turn.gif",
     )
+    frame_progress.add_argument(group)
     add_scheduler_argument(group, "frames")
 
 
@@ -63,6 +65,7 @@ def refuse(args: argparse.Namespace) -> None:
         ("set", args.set),
         ("frame", args.frame),
         ("frames", args.frames is not None),
+        ("progress", args.progress),
         ("scheduler", typed),
     ):
         if given:
@@ -80,6 +83,8 @@ def _run(args: argparse.Namespace, file: SceneFile) -> int:
     config = picture_output.colour_config(args)
     if config and args.scheduler:
         raise InputError("--ocio: found with --scheduler, allowed is one of them")
+    if args.progress and args.scheduler:
+        raise InputError("--progress: found with --scheduler, allowed is one of them")
     for change in args.set:
         pointer, equals, value = change.partition("=")
         if not equals:
@@ -98,16 +103,17 @@ def _run(args: argparse.Namespace, file: SceneFile) -> int:
         if transparent:
             image_file.check_transparent(path)
     read = [*scene_options.inputs(args), *named_files(args.file), *args.set]
-    outputs.check_outputs([*args.output, args.json], read, made=args.output if with_numbers else ())
+    outputs.check_outputs([*args.output, args.json, args.progress], read, made=args.output if with_numbers else ())
     reports = _by_tasks(args, file) if args.scheduler and with_numbers else _in_turn(args, file, frames, config)
     if args.json:
         atomic_file.write_json(args.json, reports if with_numbers else reports[0])
     return scene_options.exit_status(reports, args.strict)
 
 
-def _in_turn(args: argparse.Namespace, file, frames: Iterable[float], config: ColourConfig | None) -> list[dict]:
+def _in_turn(args: argparse.Namespace, file, frames: Sequence[float], config: ColourConfig | None) -> list[dict]:
     stage = load_core().Stage(device=args.device, validation=args.validation)
-    reports = render(stage, file, frames, args.output, config)
+    told = frame_progress.FrameProgress(args.progress, len(frames))
+    reports = render(stage, file, frames, args.output, config, told)
     summarise(text.size_text(stage.engine), reports, args.output)
     return reports
 
@@ -142,15 +148,24 @@ def named_files(path: Path) -> list[Path]:
     return [found for found in texts if found.is_file()]
 
 
-def render(stage, file, frames: Iterable[float], outputs: list[Path], config: ColourConfig | None = None) -> list[dict]:
-    """Render frames and write each to all outputs; one report per frame. config: in place of the scene's tone."""
+def render(
+    stage,
+    file,
+    frames: Sequence[float],
+    outputs: list[Path],
+    config: ColourConfig | None = None,
+    told: frame_progress.FrameProgress | None = None,
+) -> list[dict]:
+    """Render frames and write each to all outputs; one report per frame. config: in place of the scene's tone; told:
+    counts the frames.
+    """
     by_tone = picture_output.Shown(stage.srgb, stage.write_png, stage.write_exr, lambda: stage.engine.metadata)
     reports: list[dict] = []
     with (
         frame_output.Frames(outputs, file.at(0).size, file.frames_per_second) as written,
         progress_bar() as progress,
     ):
-        for frame in progress.track(list(frames), description="frames"):
+        for frame in progress.track(frames, description="frames"):
             start = time.perf_counter()
             stage.show(file.at(frame))
             shown = picture_output.by_config(by_tone, config, _shown_as(file, frame)) if config else by_tone
@@ -161,6 +176,8 @@ def render(stage, file, frames: Iterable[float], outputs: list[Path], config: Co
             report = converging.report_of(picture, report)
             scene_options.check_validation(stage.engine)
             written.add(picture, frame, shown)
+            if told:
+                told.add()
             report |= {"frame": frame, "seconds": time.perf_counter() - start}
             reports.append(report | {"picture_error": picture.error, "passes": stage.engine.passes})
         written.finish()

@@ -56,6 +56,7 @@ def port(text: str) -> int:
 def run(args: argparse.Namespace) -> int:
     """Serve until it is interrupted."""
     from quadgraph.api.stage import Stage
+    from quadgraph.browser.films import Films
     from quadgraph.browser.frame_loop import FrameLoop
     from quadgraph.browser.server import Server
     from quadgraph.browser.shown_scene import ShownScene
@@ -65,7 +66,12 @@ def run(args: argparse.Namespace) -> int:
     token = os.environ.get(_TOKEN, "")
     if token and len(token) < _LEAST_TOKEN:
         raise InputError(f"{_TOKEN}: found {len(token)} letters, allowed are at least {_LEAST_TOKEN}")
-    with _scene(args) as scene, Stage(device=args.device) as stage, Stamps(args.file.parent) as stamps:
+    with (
+        _scene(args) as scene,
+        Stage(device=args.device) as stage,
+        Stamps(args.file.parent) as stamps,
+        Films(args.device) as films,
+    ):
         stage.show(scene)
         shown = ShownScene(scene, stage.engine.bodies, stage.engine.hosts, stamps)
         low, high = stage.engine.box
@@ -81,7 +87,7 @@ def run(args: argparse.Namespace) -> int:
             "mirrors": stage.mirrors,
             "box": [low.tolist(), high.tolist()],
         }
-        server = Server(args.host, args.port, token, hello, stamps)
+        server = Server(args.host, args.port, token, hello, stamps, films)
         frames = FrameLoop(stage, shown, server.show)
         try:
             server.open(frames.inbox)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -52,11 +52,20 @@ def view(args: argparse.Namespace, engine: Engine, degrees: float) -> dict[str, 
 def lights(texts: Sequence[str], up: str, degrees: float, centre: np.ndarray) -> list[str]:
     """Lights, as --light takes them, turned about the axis through `centre` (3,), mm. Raises InputError."""
     core = load_core()
+    stated = [json.loads(core.light_json(text)) for text in texts]
+    return [core.light_text(json.dumps(light)) for light in lights_of_scene(stated, up, degrees, centre)]
+
+
+def lights_of_scene(
+    stated: Sequence[Mapping[str, Any]], up: str, degrees: float, centre: np.ndarray
+) -> list[dict[str, Any]]:
+    """Lights, as a scene file states them, turned about the axis through `centre` (3,), mm. Raises InputError."""
+    core = load_core()
     forms = {kind.name: {field.name: field.form for field in kind.fields} for kind in core.light_kinds()}
     matrix = rotation(up, degrees)
     result = []
-    for text in texts:
-        light = json.loads(core.light_json(text))
+    for each in stated:
+        light = dict(each)
         for name, form in forms[light["type"]].items():
             if form in _MOVED:
                 light[name] = (centre + matrix @ (np.array(light[name]) - centre)).tolist()
@@ -65,8 +74,9 @@ def lights(texts: Sequence[str], up: str, degrees: float, centre: np.ndarray) ->
             elif form == "turn":
                 light[name] = (light[name] + degrees) % 360
             elif form == "axis" and light[name] != up:
+                text = core.light_text(json.dumps(each))
                 raise InputError(f"light '{text}': its up is {light[name]}, so that --up {light[name]} is wanted")
-        result.append(core.light_text(json.dumps(light)))
+        result.append(light)
     return result
 
 

@@ -164,9 +164,10 @@ TEST_CASE("every key does something, and no two share one") {
     const State before = state;
     CHECK(run_command(commands[i].key, commands[i].mods, state, {bounds, 1.5f, 4}));
     const bool wished = state.quit || state.full_screen || state.undo || state.redo || state.save || state.screenshot ||
-                        state.focus_panel || state.help != before.help || state.panel != before.panel ||
-                        state.light != before.light || state.brush.on != before.brush.on ||
-                        state.knife.on != before.knife.on || state.turntable || state.compares();
+                        state.save_film || state.focus_panel || state.help != before.help ||
+                        state.panel != before.panel || state.light != before.light ||
+                        state.brush.on != before.brush.on || state.knife.on != before.knife.on || state.turntable ||
+                        state.compares();
     CHECK_MESSAGE((wished || state.scene != before.scene), commands[i].keys);
   }
   State state;

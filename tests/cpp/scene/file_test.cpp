@@ -230,6 +230,31 @@ TEST_CASE("a track that changes what is set is left out, and others go on") {
   CHECK(file.at(9) == before);
 }
 
+TEST_CASE("the frames of a file go on over another scene, which says all that they do not change") {
+  const Folder folder;
+  const SceneFile file = folder.scene(R"({
+    "body": "a.qgraph", "frames": 5, "frames_per_second": 12, "material": {"name": "marble", "sigma_a": 0.1},
+    "camera": {"azimuth": 0}, "lights": [{"type": "ambient", "irradiance": 1}],
+    "tracks": [{"path": "/material/sigma_a", "keys": [[0, 0.1], [4, 0.3]]},
+               {"path": "/camera/azimuth", "keys": [[0, 0], [4, 80]]}]})");
+  Scene other = file.at(0);
+  other.view.azimuth = 250;
+  other.lights[0].power = glm::vec3(7);
+  other.render.width = 64;
+  const SceneFile both = file.with(other);
+  CHECK(both.frames() == 5);
+  CHECK(both.frames_per_second() == 12);
+  both.save(folder.path / "both.json");
+  const SceneFile read = SceneFile::load(folder.path / "both.json");
+  CHECK(read.at(2).material == "marble,sigma_a=0.2");
+  CHECK(read.at(2).view.azimuth == 40);
+  CHECK(read.at(2).lights[0].power == glm::vec3(7));
+  CHECK(read.at(2).render.width == 64);
+  CHECK(std::filesystem::weakly_canonical(read.at(0).body) == std::filesystem::weakly_canonical(file.at(0).body));
+  other.material = "jade";
+  CHECK(refusal([&] { file.with(other); }).find("/material") != std::string::npos);
+}
+
 TEST_CASE("bad scenes: the path into the file, what was found, what is allowed") {
   check_refused("{\"body\":\n \"a\",\n ]", "no JSON at line 3, column 2");
   check_refused("[]", "/: found [], allowed is an object of");

@@ -119,7 +119,7 @@ def test_a_scene_is_shown_changed_and_saved(ball):
 
 def test_who_does_not_have_the_token_sees_nothing(ball):
     with served(ball) as (_, address):
-        for path in ("/", "/live", "/scene.json", "/scene.zip", "/picture.png"):
+        for path in ("/", "/live", "/scene.json", "/scene.zip", "/picture.png", "/film"):
             place = address.partition("/?")[0] + path
             assert refused(place) == 403
             assert refused(f"{place}?token=another") == 403
@@ -204,6 +204,9 @@ HOSTILE = [
     '{"set": "/materials/nobody", "value": "jade"}',
     '{"set": "/materials", "value": ["jade"]}',
     '{"set": "/solver/method", "value": "magic"}',
+    '{"film": 7}',
+    '{"film": {"turn": "camera", "seconds": 5, "suffix": "../../a.mp4"}}',
+    '{"film": {"turn": [[[]]], "seconds": 1e300, "suffix": null}}',
 ]
 
 

@@ -15,6 +15,7 @@ from PIL import Image
 
 import tiny
 from quadgraph import cli
+from quadgraph.base import atomic_file
 from quadgraph.base.errors import InputError
 from quadgraph.commands import turning
 
@@ -154,11 +155,65 @@ def test_what_cannot_be_made_is_said(arguments, said, tmp_path, monkeypatch, cap
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_scene_is_referred_to_its_tracks(tmp_path, capsys):
-    scene = tmp_path / "a.json"
-    scene.write_text("{}")
-    assert cli.main(["turntable", str(scene), "-o", str(tmp_path / "a.gif")]) == 1
-    assert "a track of /camera/azimuth" in capsys.readouterr().err
+@pytest.mark.parametrize("turns", ["camera", "body", "light"])
+@pytest.mark.parametrize("camera", [{"azimuth": 30, "elevation": 10}, {"eye": [9, 5, 12], "look_at": [1, 1, 1]}])
+def test_a_scene_turns_as_the_body_with_its_options_does(tmp_path, turns, camera):
+    lights = ["directional:0.4,-0.3,-1:1", "point:4,5,6:3"]
+    stated = [json.loads(_core.light_json(light)) for light in lights]
+    picture = {"exposure": 0, "samples": 4, "ground": False}
+    document = {"body": str(tiny.PATH), "material": "jade", "lights": stated, "camera": camera, "picture": picture}
+    scene = tmp_path / "scene.json"
+    scene.write_text(json.dumps(document))
+    report = tmp_path / "report.json"
+    turn = ["--turn", turns, "--frames", "3"]
+    outputs = ["-o", f"{tmp_path}/scene/%d.exr", "--json", str(report)]
+    assert cli.main(["turntable", str(scene), *FAST, *turn, *outputs]) == 0
+    view = ["--view", "30,10"]
+    if "eye" in camera:
+        view = [word for name in camera for word in (f"--{name.replace('_', '-')}", ",".join(map(str, camera[name])))]
+    same = ["--material", "jade", "--exposure", 0, "--samples", 4, *view]
+    same += [word for light in lights for word in ("--light", light)]
+    assert turntable(*same, *turn, "-o", tmp_path / "body" / "%d.exr") == 0
+    seen = [[_core.read_image(tmp_path / of / f"{k}.exr") for k in range(3)] for of in ("scene", "body")]
+    np.testing.assert_allclose(seen[0], seen[1], rtol=1e-4, atol=1e-5)
+    assert not np.allclose(seen[0][0], seen[0][1], rtol=0.05)
+    solves = len({str(frame["energy"]) for frame in json.loads(report.read_text())})
+    assert (solves == 1) == (turns == "camera")
+
+
+def test_a_scene_has_one_exposure_for_all_frames(tmp_path):
+    scene = tmp_path / "scene.json"
+    lights = [{"type": "directional", "direction": [0, 0, -1], "irradiance": 1}]
+    picture = {"width": 32, "height": 32, "samples": 4, "background": "black", "ground": False}
+    scene.write_text(json.dumps({"body": str(tiny.PATH), "lights": lights, "picture": picture}))
+    words = ["--no-correction", "--device", "cpu", "--frames", "2"]
+    assert cli.main(["turntable", str(scene), *words, "-o", f"{tmp_path}/%d.png", "-o", f"{tmp_path}/%d.exr"]) == 0
+    shown, light = (
+        [_core.read_image(tmp_path / f"{k}.{suffix}")[..., :3].sum() for k in range(2)] for suffix in ("png", "exr")
+    )
+    assert light[0] > 2 * light[1]
+    assert shown[0] > 1.5 * shown[1]  # by an exposure of its own, the dim side would be as bright
+
+
+def test_how_far_it_is_is_said_after_each_frame(tmp_path, monkeypatch):
+    said = []
+    monkeypatch.setattr(atomic_file, "write_json", lambda path, value: said.append((path, value)))
+    progress = tmp_path / "progress.json"
+    assert turntable("--frames", 3, "-o", tmp_path / "a.gif", "--progress", progress) == 0
+    assert [(path, value["done"], value["frames"]) for path, value in said] == [(progress, k, 3) for k in range(4)]
+    left = [value["seconds_left"] for _, value in said]
+    assert left[:2] == [None, None]
+    assert left[2] > 0
+    assert left[3] == 0
+
+
+def test_frames_of_a_scene_say_how_far_they_are(tmp_path):
+    scene, progress = tmp_path / "a.json", tmp_path / "progress.json"
+    scene.write_text(json.dumps({"body": str(tiny.PATH), "frames": 2}))
+    words = ["render", str(scene), *FAST, "-o", str(tmp_path / "a.gif"), "--progress", str(progress)]
+    assert cli.main([*words, "--frames"]) == 0
+    assert json.loads(progress.read_text()) == {"done": 2, "frames": 2, "seconds_left": 0}
+    assert cli.main([*words, "--frames", "--scheduler", "processes:1"]) == 1
 
 
 @pytest.mark.parametrize("name", ["a.gif", "a.mp4"])

@@ -46,6 +46,7 @@ function hear(message) {
   if (message.rings) hearRings(message.rings);
   if (message.painted) painted(message.painted);
   if (message.layered) layered(message.layered);
+  if (message.film) hearFilm(message.film);
   if (message.refused) {
     stroke = null;
     trouble(message.refused);
@@ -312,6 +313,7 @@ function listen() {
     link.click();
   });
   showSaving([]);
+  listenFilm();
   let resized = 0;
   addEventListener("resize", () => {
     clearTimeout(resized);
@@ -319,7 +321,7 @@ function listen() {
   });
 }
 
-// Once brush.js is there, too.
+// Once the other scripts are there, too.
 addEventListener("DOMContentLoaded", () => {
   gestures();
   listen();
