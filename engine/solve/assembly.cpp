@@ -4,6 +4,7 @@
 #include <bit>
 #include <utility>
 
+#include "engine/solve/moved_bytes.h"
 #include "interface/assemble/assemble_edges.comp.h"
 #include "interface/assemble/assemble_even.comp.h"
 #include "interface/assemble/assemble_fdm.comp.h"
@@ -25,9 +26,6 @@
 
 namespace quadgraph {
 namespace {
-
-constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
-constexpr std::uint64_t index_bytes = sizeof(std::uint32_t);
 
 // More would gain less than they cost: the bound goes from 3.1 to 2.6 in five steps, and to 2.55 in ten.
 constexpr std::uint32_t bound_steps = 5;

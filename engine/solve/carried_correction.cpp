@@ -4,16 +4,11 @@
 #include <cmath>
 
 #include "engine/solve/mesh_error.h"
+#include "engine/solve/moved_bytes.h"
 #include "interface/surface/carried_exitance.comp.h"
 #include "interface/surface/light_change.comp.h"
 
 namespace quadgraph {
-namespace {
-
-constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
-
-}  // namespace
-
 CarriedCorrection::CarriedCorrection(device::Device& device, const LevelBuffers& level) {
   const auto room = [&](std::uint64_t count, const char* name, device::Place place = device::Place::device) {
     return device::Buffer(device, count * vec3_bytes, place, "carried/" + std::string(name));

@@ -7,6 +7,7 @@
 #include "engine/base/text.h"
 #include "engine/device/memory.h"
 #include "engine/solve/mesh_error.h"
+#include "engine/solve/moved_bytes.h"
 #include "engine/solve/patch_sums.h"
 #include "engine/solve/source_walk.h"
 #include "engine/solve/surface_parts.h"
@@ -16,7 +17,6 @@
 namespace quadgraph {
 namespace {
 
-constexpr std::uint64_t sum_bytes = FIXED_WORDS * sizeof(std::uint32_t);
 constexpr std::uint64_t counts_at = gpu::CERTIFY_SUMS * FIXED_WORDS * gpu::WALK_SUMS;  // words
 
 // Of the light that enters a walk counts with one part in so many, whatever it stands for.
@@ -29,10 +29,6 @@ constexpr double longest_round = 0.4;   // s
 constexpr double most_walks = 1e7;      // of a round
 constexpr double chance = 2;            // standard errors within which what was measured tells nothing
 constexpr double standard_errors = 3;   // from which on a difference is no chance
-
-double sum(const glm::dvec3& v) {
-  return v.x + v.y + v.z;
-}
 
 // What a sentence says of a part; empty where it has nothing against it.
 std::string against(const char* name, const CertifiedPart& part, double stated) {
@@ -147,7 +143,7 @@ Certificate Certifier::run(const CertifiedSolution& solution, double seconds, st
           .dimmest = certified(dimmest),
           .walks = made.walks,
           .segments = made.segments,
-          .given_up = sum(made.given_up) / weight / std::max(sum(solution.entered), 1e-300),
+          .given_up = sum_of_channels(made.given_up) / weight / std::max(sum_of_channels(solution.entered), 1e-300),
           .seconds = made.seconds,
           .guided = guided};
 }

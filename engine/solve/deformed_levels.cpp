@@ -8,14 +8,13 @@
 #include <glm/vec4.hpp>
 #include <string>
 
+#include "engine/solve/moved_bytes.h"
 #include "interface/deform/deform_nodes.comp.h"
 #include "interface/deform/shape_state.comp.h"
 #include "shaders/deform/deform_shared.h"
 
 namespace quadgraph {
 namespace {
-
-constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
 
 // Volume that a tet counts for at least, as a share of the cube of the rest box's diagonal, so that a body without any
 // volume is finite.

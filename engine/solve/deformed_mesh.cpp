@@ -1,11 +1,10 @@
 #include "engine/solve/deformed_mesh.h"
 
+#include "engine/solve/moved_bytes.h"
 #include "interface/deform/deform.comp.h"
 
 namespace quadgraph {
 namespace {
-
-constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
 
 bool has_control(DeformerKind kind) {
   using enum DeformerKind;

@@ -2,14 +2,12 @@
 
 #include <algorithm>
 
+#include "engine/solve/moved_bytes.h"
 #include "interface/exchange/exchange_rays.comp.h"
 #include "shaders/exchange/exchange_shared.h"
 
 namespace quadgraph {
 namespace {
-
-constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
-constexpr std::uint64_t index_bytes = sizeof(std::uint32_t);
 
 // Workgroups of one dispatch; every device takes 65535.
 constexpr std::uint32_t most_rows = 32768;

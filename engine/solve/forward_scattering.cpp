@@ -5,6 +5,7 @@
 #include <limits>
 #include <span>
 
+#include "engine/solve/moved_bytes.h"
 #include "interface/transport/transport_flow.comp.h"
 #include "interface/transport/transport_flux.comp.h"
 #include "interface/transport/transport_flux_load.comp.h"
@@ -14,8 +15,6 @@
 namespace quadgraph {
 namespace {
 
-constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
-constexpr std::uint64_t sum_bytes = FIXED_WORDS * sizeof(std::uint32_t);
 constexpr std::uint64_t axes = 3, corners = 4;
 
 // Of the tets around every vertex: each has four.

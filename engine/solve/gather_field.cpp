@@ -5,6 +5,7 @@
 
 #include "engine/reference/vertex_starts.h"
 #include "engine/solve/etendue.h"
+#include "engine/solve/moved_bytes.h"
 #include "interface/gather/gather_exitance.comp.h"
 #include "interface/gather/gather_first.comp.h"
 #include "interface/gather/gather_flow.comp.h"
@@ -20,8 +21,6 @@
 namespace quadgraph {
 namespace {
 
-constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
-
 // Tets that a ray crosses on the way to its end, about as many as in marble at the finest level; for the bytes.
 constexpr std::uint64_t tets_per_ray = 8;
 constexpr std::uint64_t tet_bytes = sizeof(gpu::TetCell) + sizeof(gpu::Optical);
@@ -31,7 +30,7 @@ constexpr std::uint64_t boxes_per_mean = 150, nodes_per_mean = 60;
 
 constexpr std::uint64_t faces_per_vertex = 6;
 constexpr std::uint64_t face_corner_bytes = sizeof(std::uint32_t) + sizeof(glm::uvec3) + 3 * vec3_bytes;
-constexpr std::uint64_t face_bytes = 2 * sizeof(std::uint32_t) + sizeof(glm::uvec3) + 7 * vec3_bytes;
+constexpr std::uint64_t gathered_face_bytes = 2 * sizeof(std::uint32_t) + sizeof(glm::uvec3) + 7 * vec3_bytes;
 
 }  // namespace
 
@@ -229,7 +228,7 @@ void GatherField::record_nodes(Workspace& work, const GatherInput& input) {
                             .nodes = nodes_.address(),
                             .first = 0,
                             .count = 0};
-  std::uint64_t bytes = input.level.face_count * face_bytes;
+  std::uint64_t bytes = input.level.face_count * gathered_face_bytes;
   input.tree.upwards([&](std::uint32_t first, std::uint32_t count) {
     push.first = first;
     push.count = count;

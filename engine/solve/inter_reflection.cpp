@@ -5,6 +5,7 @@
 
 #include "engine/reference/exchange.h"
 #include "engine/reference/sky.h"
+#include "engine/solve/moved_bytes.h"
 #include "interface/exchange/exchange.comp.h"
 #include "interface/exchange/exchange_enter.comp.h"
 #include "interface/exchange/exchange_finer.comp.h"
@@ -13,8 +14,7 @@
 namespace quadgraph {
 namespace {
 
-constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
-constexpr std::uint64_t face_bytes = sizeof(glm::uvec3) + 3 * vec3_bytes;  // its area
+constexpr std::uint64_t measured_face_bytes = sizeof(glm::uvec3) + 3 * vec3_bytes;  // its area
 
 }  // namespace
 
@@ -102,7 +102,7 @@ void InterReflection::record_enter(Workspace& work, const LevelBuffers& level, c
                                     .reduction = work.reduction.address(),
                                     .count = level.face_count};
   work.recorder.dispatch(work.passes.of(shader::exchange_enter), push, level.face_count, "exchange",
-                         level.face_count * (face_bytes + 5 * vec3_bytes));
+                         level.face_count * (measured_face_bytes + 5 * vec3_bytes));
 }
 
 void InterReflection::start_over() {
@@ -141,7 +141,7 @@ void InterReflection::record_bounce(Workspace& work, const Solved& solved) {
                                .rays = static_cast<float>(matrix_->rays())};
   const std::uint64_t entries = graph_.levels()[*level_].seen.size() - level.face_count - 1;
   work.recorder.dispatch(work.passes.of(shader::exchange), push, level.face_count, "exchange",
-                         level.face_count * (face_bytes + sizeof(glm::uvec2) + 3 * vec3_bytes) +
+                         level.face_count * (measured_face_bytes + sizeof(glm::uvec2) + 3 * vec3_bytes) +
                              entries * (sizeof(std::uint32_t) + 2 * vec3_bytes));
   record_enter(work, level, irradiance_.back());
   count_ = std::min(count_ + 1, max_bounces);
@@ -170,7 +170,7 @@ void InterReflection::record_beam(Workspace& work, const std::vector<LevelBuffer
                                     .count = level.face_count,
                                     .width = finer.width};
   work.recorder.dispatch(work.passes.of(shader::exchange_finer), push, level.face_count, "exchange",
-                         level.face_count * (face_bytes + finer.width * (8 + vec3_bytes) + vec3_bytes));
+                         level.face_count * (measured_face_bytes + finer.width * (8 + vec3_bytes) + vec3_bytes));
   record_enter(work, level, irradiance_[number]);
 }
 

@@ -9,10 +9,6 @@ namespace {
 
 constexpr double most_noise = 0.3;  // of the power of a part of which anything is said
 
-double sum(const glm::dvec3& v) {
-  return v.x + v.y + v.z;
-}
-
 // Mean and its standard error.
 template <typename Values>
 std::pair<double, double> mean_of(const Values& values) {
@@ -47,6 +43,10 @@ double relative_square(const PatchSums& part, std::size_t without) {
 
 }  // namespace
 
+double sum_of_channels(const glm::dvec3& v) {
+  return v.x + v.y + v.z;
+}
+
 std::vector<bool> dimmest_patches(const PatchSums& whole) {
   std::vector<std::size_t> order;
   double left = 0;
@@ -55,7 +55,7 @@ std::vector<bool> dimmest_patches(const PatchSums& whole) {
     order.push_back(k);
     left += whole.patches[k].area / 3;
   }
-  const auto bright = [&](std::size_t k) { return sum(whole.patches[k].solved) / whole.patches[k].area; };
+  const auto bright = [&](std::size_t k) { return sum_of_channels(whole.patches[k].solved) / whole.patches[k].area; };
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return bright(a) < bright(b); });
   std::vector<bool> taken(whole.patches.size());
   for (const std::size_t k : order) {
@@ -70,8 +70,8 @@ CertifiedPart certified(const PatchSums& part) {
   std::array<double, walk_batches> walked{};
   double solved = 0;
   for (const PatchSums::Patch& patch : part.patches) {
-    solved += sum(patch.solved);
-    for (std::size_t b = 0; b < walked.size(); ++b) walked[b] += sum(patch.walked[b]);
+    solved += sum_of_channels(patch.solved);
+    for (std::size_t b = 0; b < walked.size(); ++b) walked[b] += sum_of_channels(patch.walked[b]);
   }
   const auto [power, noise] = mean_of(walked);
   if (!(power > 0) || noise > most_noise * power) return {};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <glm/vec3.hpp>
 #include <vector>
 
 #include "engine/reference/solution.h"
@@ -27,5 +28,7 @@ CertifiedPart certified(const PatchSums& part);
 
 // The third of the surface whose patches send out least. By face it would be where the noise of the solution is low.
 std::vector<bool> dimmest_patches(const PatchSums& whole);
+
+double sum_of_channels(const glm::dvec3& v);
 
 }  // namespace quadgraph

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/device/memory.h"
+#include "engine/solve/moved_bytes.h"
 #include "engine/solve/solver_choice.h"
 #include "engine/solve/surface_parts.h"
 #include "engine/solve/surface_results.h"
@@ -14,11 +15,9 @@
 namespace quadgraph {
 namespace {
 
-constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
-
 // What is left of what a solve is to find, as a share of it, and its iterations at most, with cycles and without.
-constexpr double share_left = 0.05;
-constexpr std::uint32_t most_cycles = 6, most_steps = 500;
+constexpr double changed_share_left = 0.05;
+constexpr std::uint32_t most_changed_cycles = 6, most_changed_steps = 500;
 
 }  // namespace
 
@@ -45,8 +44,8 @@ void Perturbation::solve(const PerturbedSolution& solution, const Record& record
   const SolverKind kind = possible_solver(solution.operators, solution.key, SolverKind::fmg_pcg).solver;
   const LevelTask task{.solver = kind,
                        .boundaries = solution.boundaries.on_device,
-                       .tolerance = share_left,
-                       .max_iterations = rules_of(kind).cycles ? most_cycles : most_steps,
+                       .tolerance = changed_share_left,
+                       .max_iterations = rules_of(kind).cycles ? most_changed_cycles : most_changed_steps,
                        .smoothing = rules_of(kind).smoothing};
   LevelSolver solver(work, solution.operators, solution.key, 0, task);
   solver.run();

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/base/error.h"
+#include "engine/solve/moved_bytes.h"
 #include "interface/source/right_hand_side_buried.comp.h"
 #include "interface/source/tet_cells.comp.h"
 #include "interface/source/walk_source.comp.h"
@@ -12,7 +13,6 @@
 namespace quadgraph {
 namespace {
 
-constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
 constexpr std::uint64_t power_bytes = FIXED_WORDS * sizeof(std::uint32_t);
 
 std::uint32_t carriers(const LevelBuffers& level, Method method) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/solve/assembly.h"
+#include "engine/solve/moved_bytes.h"
 #include "interface/source/vertex_unscattered.comp.h"
 #include "interface/surface/display_scale.comp.h"
 #include "interface/surface/energy.comp.h"
@@ -16,8 +17,6 @@
 
 namespace quadgraph {
 namespace {
-
-constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
 
 std::uint32_t is_on_vertices(Method method) {
   return on_vertices(method) ? 1 : 0;

@@ -8,6 +8,7 @@
 #include "engine/base/error.h"
 #include "engine/solve/assembly.h"
 #include "engine/solve/level_solver.h"
+#include "engine/solve/moved_bytes.h"
 #include "engine/solve/solver_choice.h"
 #include "engine/solve/surface_share.h"
 #include "interface/transport/transport_change.comp.h"
@@ -16,10 +17,6 @@
 
 namespace quadgraph {
 namespace {
-
-constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
-constexpr std::uint64_t sum_bytes = FIXED_WORDS * sizeof(std::uint32_t);
-constexpr std::uint32_t halves = gpu::TRANSPORT_HALVES;
 
 // What is left of what a solve is to find, as a share of it, and its iterations at most, with cycles and without.
 constexpr double share_left = 0.01;
@@ -112,12 +109,12 @@ TransportCorrection::TransportCorrection(device::Device& device, const Level& le
   const auto room = [&](std::uint64_t bytes, const char* name, device::Place place = device::Place::device) {
     return device::Buffer(device, bytes, place, "transport/" + std::string(name));
   };
-  for (std::uint32_t half = 0; half < halves; ++half) {
+  for (std::uint32_t half = 0; half < gpu::TRANSPORT_HALVES; ++half) {
     right_side_[half] = room(level.vertex_count() * vec3_bytes, "b");
     known_[half] = room(level.vertex_count() * vec3_bytes, "b, before");
     change_[half] = room(level.vertex_count() * vec3_bytes, "change of fluence");
   }
-  halves_ = room(halves * level.face_count() * vec3_bytes, "exitance of both halves");
+  halves_ = room(gpu::TRANSPORT_HALVES * level.face_count() * vec3_bytes, "exitance of both halves");
   exitance_ = room(level.face_count() * vec3_bytes, "exitance");
   statistics_ = room(2 * sizeof(gpu::TransportChange), "change");
   statistics_on_host_ = room(2 * sizeof(gpu::TransportChange), "change, read back", device::Place::host);
@@ -239,7 +236,7 @@ void TransportCorrection::draw(const CorrectionParts& parts, const Sampling& sam
   }
   draws_ += draws;
   samples_.record_books(parts.transport, 1.0f / static_cast<float>(draws_), shares.known);
-  for (std::uint32_t half = 0; half < halves; ++half) solve(parts, half, shares.known);
+  for (std::uint32_t half = 0; half < gpu::TRANSPORT_HALVES; ++half) solve(parts, half, shares.known);
   record_change(parts, shares.ahead);
   samples_.record_segments(parts.transport);
   parts.transport.work.recorder.submit();
@@ -282,7 +279,7 @@ void TransportCorrection::start(const CorrectionParts& parts, const WalkTask& ta
   OperatorBuffers& op = parts.operators.at(correction_key, 0);
   record_surface_dimmest(parts.transport.work, parts.results.vertex_exitance(), op.surface_share, op.surface_count);
   const device::Buffer& exitance = parts.results.exitance();
-  for (std::uint32_t half = 0; half < halves; ++half) {
+  for (std::uint32_t half = 0; half < gpu::TRANSPORT_HALVES; ++half) {
     recorder.copy(exitance, halves_, exitance.size(), half * exitance.size());
   }
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/reference/vertex_starts.h"
+#include "engine/solve/moved_bytes.h"
 #include "engine/solve/row_structure.h"
 #include "interface/transport/transport_books.comp.h"
 #include "interface/transport/transport_carry.comp.h"
@@ -18,10 +19,6 @@
 
 namespace quadgraph {
 namespace {
-
-constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
-constexpr std::uint64_t sum_bytes = FIXED_WORDS * sizeof(std::uint32_t);
-constexpr std::uint32_t halves = gpu::TRANSPORT_HALVES;
 
 // Rays a face of light whose directions are known. Fewer are an error that no sweep mends, in dark bodies the largest.
 constexpr std::uint32_t rays_at_rest = 16, rays_in_motion = 4;
@@ -60,14 +57,14 @@ TransportSamples::TransportSamples(device::Device& device, const Level& level) {
   const std::vector<std::uint32_t> boundary = nearest_boundary(level);
   if (!boundary.empty()) boundary_ = device::upload<std::uint32_t>(device, boundary, "transport/nearest boundary");
   drawn_ = room(sizeof(std::uint32_t), "points drawn");
-  load_ = room(2 * halves * level.vertex_count() * sum_bytes, "load");
-  gathered_ = room(halves * level.face_count() * vec3_bytes, "gathered exitance");
+  load_ = room(2 * gpu::TRANSPORT_HALVES * level.vertex_count() * sum_bytes, "load");
+  gathered_ = room(gpu::TRANSPORT_HALVES * level.face_count() * vec3_bytes, "gathered exitance");
   const TetIncidence tets = quadgraph::tet_incidence(level);
   tet_offset_ = device::upload<std::uint32_t>(device, tets.offset, "transport/tet_offset");
   tet_incidence_ = device::upload<std::uint32_t>(device, tets.tet, "transport/tet_incidence");
   mass_ = room(vertices, "mass");
   for (device::Buffer& swept : swept_) swept = room(vertices, "swept");
-  point_sums_ = room(2 * halves * gpu::WALK_SUMS * sum_bytes, "power of the points");
+  point_sums_ = room(2 * gpu::TRANSPORT_HALVES * gpu::WALK_SUMS * sum_bytes, "power of the points");
   books_ = room(sizeof(gpu::TransportBook), "books");
   segments_ = room(sizeof(std::uint32_t), "segments");
   walk_sums_ = room(gpu::TRANSPORT_WALK_SUMS * gpu::WALK_SUMS * sum_bytes, "power of the walk");
@@ -278,7 +275,7 @@ void TransportSamples::record_exitance(const TransportParts& parts, std::uint32_
                                         .rays = rays,
                                         .seed = ++seed_,
                                         .keep = known};
-  const std::uint64_t samples = std::uint64_t{halves} * parts.level.face_count;
+  const std::uint64_t samples = std::uint64_t{gpu::TRANSPORT_HALVES} * parts.level.face_count;
   work.recorder.dispatch(work.passes.of(shader::transport_exitance), push, samples, "transport exitance",
                          samples * rays * tets_per_ray * segment_bytes);
 }
@@ -300,7 +297,7 @@ void TransportSamples::record_draw(const TransportParts& parts, std::uint32_t di
                                         .points = points_.address(),
                                         .tet_count = parts.level.tet_count,
                                         .draw = draw_++ % draws_apart,
-                                        .wanted = static_cast<float>(wanted) / halves,
+                                        .wanted = static_cast<float>(wanted) / gpu::TRANSPORT_HALVES,
                                         .room = room_};
   work.recorder.dispatch(work.passes.of(shader::transport_points), points, parts.level.tet_count, "transport points",
                          weights_.size() + points_.size());

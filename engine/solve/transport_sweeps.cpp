@@ -1,6 +1,7 @@
 // The samples of a sweep, and what it makes of them.
 #include <cstddef>
 
+#include "engine/solve/moved_bytes.h"
 #include "engine/solve/transport_samples.h"
 #include "interface/transport/transport_mean.comp.h"
 #include "interface/transport/transport_smooth.comp.h"
@@ -9,13 +10,6 @@
 #include "interface/transport/transport_sweep_forward.comp.h"
 
 namespace quadgraph {
-namespace {
-
-constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
-constexpr std::uint32_t halves = gpu::TRANSPORT_HALVES;
-
-}  // namespace
-
 void TransportSamples::record_sweep(const TransportParts& parts, std::uint32_t directions, std::uint32_t wanted) {
   Workspace& work = parts.work;
   const std::uint64_t segments = std::uint64_t{wanted} * directions * tets_per_ray;
@@ -92,7 +86,7 @@ void TransportSamples::record_step(const TransportParts& parts, const std::array
 void TransportSamples::record_flux_step(const TransportParts& parts, const std::array<device::Buffer, 2>& change,
                                         const TransportShares& shares, float share) {
   const ForwardParts forward = forward_parts(parts);
-  forward_->record_load(forward, share / halves, shares.known);
+  forward_->record_load(forward, share / gpu::TRANSPORT_HALVES, shares.known);
   const std::uint64_t axis = std::uint64_t{parts.level.vertex_count} * vec3_bytes;
   for (std::uint64_t at = 0; at < 3 * axis; at += axis) {
     record_smooth(parts, mass_.address(), forward_->load().address() + at, swept_[0].address());

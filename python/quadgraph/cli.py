@@ -10,11 +10,10 @@ import importlib
 import re
 import sys
 from collections.abc import Sequence
-from importlib.metadata import entry_points
 from types import ModuleType
 from typing import Any
 
-from quadgraph.base import program
+from quadgraph.base import config_file, program
 from quadgraph.base.errors import InputError
 from quadgraph.base.version import __version__
 from quadgraph.commands import config
@@ -66,11 +65,34 @@ class Added:
         return "\n".join(["validation (quadgraph-validation is installed):", *self._lines])
 
 
-def added_commands() -> dict[str, ModuleType]:
-    """The modules of installed entry points by the names of their subcommands, in the order of VALIDATION."""
+def own_commands(only: str | None = None) -> dict[str, ModuleType]:
+    """The package's own modules by the names of their subcommands: all, or the one of that name if there is one."""
+    names = [name for name in SUBCOMMANDS if only in (None, name)]
+    return {name: importlib.import_module(f"quadgraph.commands.{SUBCOMMANDS[name]}") for name in names}
+
+
+def added_commands(only: str | None = None) -> dict[str, ModuleType]:
+    """As own_commands, but the modules of installed entry points, in the order of VALIDATION."""
+    from importlib.metadata import entry_points  # itself no light module
+
     found = {each.name: each for each in entry_points(group="quadgraph.commands")}
     order = [name for name in VALIDATION if name in found] + sorted(found.keys() - set(VALIDATION))
-    return {name: found[name].load() for name in order}
+    return {name: found[name].load() for name in order if only in (None, name)}
+
+
+def needed_commands(given: Sequence[str]) -> tuple[dict[str, ModuleType], dict[str, ModuleType]]:
+    """What own_commands and added_commands give of the subcommand that a command line asks for.
+
+    Of all subcommands where it names none, where it is one that tells of all, and where there is a file of defaults,
+    which may name options of any.
+    """
+    asked = next(iter(given), "")
+    if asked != "completion" and not config_file.exists():
+        if own := own_commands(asked):
+            return own, {}
+        if added := added_commands(asked):
+            return {}, added
+    return own_commands(), added_commands()
 
 
 def build_parser(commands: dict[str, ModuleType], added: dict[str, ModuleType]) -> argparse.ArgumentParser:
@@ -141,8 +163,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _run(given: Sequence[str]) -> int:
-    commands = {name: importlib.import_module(f"quadgraph.commands.{module}") for name, module in SUBCOMMANDS.items()}
-    added = added_commands()
+    commands, added = needed_commands(given)
     check_installed(given, added)
     parser = build_parser(commands, added)
     if config.OFF not in given:

@@ -24,7 +24,7 @@ struct PathEnterPush {
   QG_REF(ShadowViews) views;
   uint stripes;  // invocations per triangle and axis
   uint light_count;
-  float eta, coat_eta, coat;  // as of OpticalSurface
+  float eta, coat_eta, coat;    // as of OpticalSurface
   float diffuse_transmittance;  // of a smooth surface under uniform illumination from outside
   PathTools tools;  // where there are any, cells hide the light and not shadow maps, which know nothing of them
 };

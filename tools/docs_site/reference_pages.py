@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import importlib
 import os
 import tomllib
 from collections.abc import Iterator
@@ -15,8 +14,7 @@ def commands(_root: Path) -> str:
     from quadgraph import cli
 
     os.environ["COLUMNS"] = "96"
-    own = {name: importlib.import_module(f"quadgraph.commands.{module}") for name, module in cli.SUBCOMMANDS.items()}
-    parser = cli.build_parser(own, cli.added_commands())
+    parser = cli.build_parser(cli.own_commands(), cli.added_commands())
     (subparsers,) = [action for action in parser._actions if isinstance(action, argparse._SubParsersAction)]
     lines = ["# Command lines", "", "What `--help` of each command says, from its parser when this site was built."]
     for name, command in subparsers.choices.items():

@@ -19,6 +19,14 @@ def place() -> Path:
     return (Path(folder) if folder else Path.home() / ".config") / "quadgraph" / "config.toml"
 
 
+def exists() -> bool:
+    """Whether there is one that can be looked at."""
+    try:
+        return place().exists()
+    except (OSError, RuntimeError):  # the last: there is no home
+        return False
+
+
 def load() -> dict[str, Any]:
     """What it says; nothing where there is none. Raises InputError where it cannot be read or is no TOML."""
     try:

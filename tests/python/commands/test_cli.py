@@ -39,8 +39,9 @@ def test_the_help_of_bake_tells_the_defaults_of_what_bakes(capsys):
     assert {name: text for name, text in told if name in defaults} == defaults
 
 
-def test_a_start_loads_nothing_that_only_meshes_need():
-    loaded = "[name for name in ('pymeshlab', 'scipy', 'trimesh') if name in sys.modules]"
+def test_a_start_loads_nothing_that_only_meshes_or_other_commands_need():
+    names = ("pymeshlab", "scipy", "trimesh", "quadgraph.commands.bake", "quadgraph_validation")
+    loaded = f"[name for name in {names} if name in sys.modules]"
     code = f"import sys; from quadgraph import cli; cli.main(['solve', {str(tiny.PATH)!r}]); print({loaded})"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert done.stdout.endswith("[]\n"), done.stdout + done.stderr

@@ -33,10 +33,14 @@ PANEL = 340  # pixels of the panel's width at a scale of 1
 FIELD = 437  # height at which materials are typed
 SIZE = (900, 600)
 LIGHTS = ["--light", "directional:-0.94,-0.1,0.34:1"]  # from azimuth 110
-# Where a test does not say otherwise: a settled picture takes a fifth of the time. No target of --converge, or else a
-# picture at rest goes on changing.
-QUICK = {"--converge": "0", "--samples": "4", "--sweep-points": "1000"}
-QUICK_SCENE = {"picture": {"samples": 4}, "solver": {"sweep_points": 1000}}  # in a scene file
+# Where a test does not say otherwise: a settled picture takes a tenth of the time, without a ground. No target of
+# --converge, or else a picture at rest goes on changing.
+QUICK = {"--converge": "0", "--samples": "4", "--sweep-points": "1000", "--radiance": "lambertian"}
+# The same in a scene file.
+QUICK_SCENE = {
+    "picture": {"samples": 4, "radiance": "lambertian", "ground": False},
+    "solver": {"sweep_points": 1000},
+}
 
 
 class Server(NamedTuple):
@@ -116,6 +120,7 @@ class Hand:
     ):
         if body.suffix != ".json":
             arguments += tuple(word for option in QUICK.items() if option[0] not in arguments for word in option)
+            arguments += () if "--ground" in arguments else ("--no-ground",)
         self.environment = os.environ | {"DISPLAY": server.name}
         self.environment.pop("WAYLAND_DISPLAY", None)
         self.server = server
@@ -253,9 +258,8 @@ def sides(picture: np.ndarray) -> tuple[float, float]:
 
 def test_a_hand_at_the_window(open_window, tmp_path: Path):
     """Light dragged, material, view, size, picture to file, quit: each changes what it should, where it should."""
-    hand = open_window(
-        "--material", "sigma_s_prime=2,sigma_a=.3,eta=1.3", "--exposure", "2", "--view", "45,15", *LIGHTS
-    )
+    look = ["--exposure", "2", "--view", "45,15", "--radiance", "gathered", "--ground"]
+    hand = open_window("--material", "sigma_s_prime=2,sigma_a=.3,eta=1.3", *look, *LIGHTS)
     first = hand.picture()
     left, right = sides(first)
     assert right > 1.2 * left

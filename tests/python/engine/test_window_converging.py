@@ -15,6 +15,7 @@ SIZE = (640, 320)  # of the window: a solve that joins the mean draws the pictur
 NOTE = 60  # pixels at the top, where it says how far it has come
 LOOK = ["--material", "sigma_s_prime=.4,sigma_a=.05,eta=1.3", "--view", "45,15,6.83", "--light", "directional:-1,0,0:3"]
 QUICK = ["--sweep-points", "300", "--samples", "16", "--no-ground", "--exposure", "1", "--background", "black"]
+QUICK += ["--radiance", "gathered"]  # whose error it is that the picture comes to
 
 
 def body_of(hand) -> np.ndarray:
