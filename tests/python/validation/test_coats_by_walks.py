@@ -14,7 +14,7 @@ from shapes import icosphere
 pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
 pytest.importorskip("numba", reason="the extra `walks` is not installed: run tools/setup")
 
-from quadgraph_validation.truth import mesh_walk
+from quadgraph_validation.truth import mesh_walk, microsurface
 
 RADIUS, ZONES, BATCHES, WALKS = 8.0, 6, 8, 12_000
 AXIS = np.array([2.0, 3.0, 6.0]) / 7
@@ -65,3 +65,40 @@ def test_a_coated_ball_is_as_walks_say(ball, eta, coat_eta, light):
     print("coated over bare, zones", found[coat_eta][0] / found[0.0][0], "walks", found[coat_eta][1] / found[0.0][1])
     change = (found[coat_eta][0] @ areas) / (found[0.0][0] @ areas) - 1
     assert abs(change) > 0.03  # so that what is off above would show a coat left out
+
+
+UP = np.array([0.0, 0.0, 1.0])
+
+
+def follow(way: tuple[float, ...], surfaces: list[tuple[float, float, float]], state: np.ndarray) -> np.ndarray | None:
+    """Direction of light that has gone down through rough surfaces (index above, index below, alpha); None: out."""
+    at, down = 0, True
+    while 0 <= at < len(surfaces):
+        above, below, alpha = surfaces[at]
+        # `at_rough_face` wants the denser side behind the normal.
+        turned = above > below
+        normal, inside = (-UP if turned else UP), down == turned
+        ratio = max(above / below, below / above)
+        *way, through = microsurface.at_rough_face(normal, *way, inside, ratio, alpha, state)
+        down = down if through else not down
+        at += 1 if down else -1
+    return np.array(way) if down else None
+
+
+@pytest.mark.parametrize(
+    ("eta", "alpha", "coat_eta", "coat_alpha"),
+    [(1.4, 0.6, 1.333, 0.02), (1.5, 0.5, 1.5, 0.2), (1.3, 0.2, 1.5, 0.02), (1.6, 0.6, 1.333, 0.05)],
+)
+@pytest.mark.parametrize("cosine", [1.0, 0.6])
+def test_facets_of_coat_and_body_spread_light_as_those_of_one_surface(eta, alpha, coat_eta, coat_alpha, cosine):
+    """That of docs/physics.md, "Coats"; backwards, along view rays."""
+    one = np.hypot(alpha * (eta - coat_eta), coat_alpha * (coat_eta - 1)) / (eta - 1)
+    way, state = (np.sqrt(1 - cosine**2), 0.0, -cosine), np.array([11], np.uint64)
+    medians = []
+    for surfaces in ([(1.0, coat_eta, coat_alpha), (coat_eta, eta, alpha)], [(1.0, eta, one)]):
+        ways = [follow(way, surfaces, state) for _ in range(8000)]
+        found = np.array([each for each in ways if each is not None])
+        middle = found.mean(axis=0) / np.linalg.norm(found.mean(axis=0))
+        medians.append(np.degrees(np.median(np.arccos(np.clip(found @ middle, -1, 1)))))
+    print(f"half of the light within {medians[0]:.2f} and {medians[1]:.2f} degrees")
+    assert medians[1] == pytest.approx(medians[0], rel=0.2)
