@@ -51,6 +51,8 @@ void bind_scene_file(py::module_& module) {
       .def("set", &SceneFile::set, py::arg("pointer"), py::arg("value"),
            "Puts a JSON value at a JSON pointer; a text that is no JSON counts as a string. Raises InputError, and "
            "changes nothing, where the scene would be wrong.")
+      .def("of_scene", &SceneFile::with, py::arg("scene"),
+           "The same frames of another Scene, whose values its tracks change. Raises InputError.")
       .def("save", &SceneFile::save, py::arg("path"), "Raises InputError naming the file.");
 }
 

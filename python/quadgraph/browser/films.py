@@ -4,6 +4,7 @@ frames of the session.
 
 from __future__ import annotations
 
+import json
 import shutil
 import subprocess
 import sys
@@ -12,8 +13,9 @@ from collections.abc import Mapping
 from contextlib import ExitStack
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
+from quadgraph import core
 from quadgraph.api.scene import Scene, SceneFile
 from quadgraph.base import json_text
 from quadgraph.base.child_process import beside
@@ -21,7 +23,11 @@ from quadgraph.base.errors import InputError
 from quadgraph.base.message import ERROR
 from quadgraph.browser.page_values import shown
 
+if TYPE_CHECKING:
+    from quadgraph.core import SceneFile as CoreSceneFile
+
 TURNS = ("camera", "body", "light")
+OWN = "frames"  # in place of a turn: those of the scene file
 SECONDS = (5, 10, 15)
 SUFFIXES = (".mp4", ".gif")
 RATE = 24  # frames a second
@@ -34,11 +40,14 @@ _ALLOWED = {"turn": TURNS, "seconds": SECONDS, "suffix": SUFFIXES}
 class Films:
     """The film that is being made, or that was made last. Use it in a `with` block, from one thread at a time."""
 
-    def __init__(self, device: str = "") -> None:
-        """Hold no film; device: as of `Engine`. `self.state` is what a page is told of it, ready for JSON."""
+    def __init__(self, device: str = "", own: CoreSceneFile | None = None) -> None:
+        """Hold no film; device: as of `Engine`; own: a scene file with frames to film, if there is one.
+
+        `self.state` is what a page is told of it, ready for JSON.
+        """
         self.folder = Path(tempfile.mkdtemp(prefix="quadgraph-films-"))
         self.state: dict[str, Any] = {"is": "none"}
-        self._device = device
+        self._device, self._own = device, own
         self._film = self.folder / "film.mp4"
         self._made: Path | None = None
         self._process: subprocess.Popen[str] | None = None
@@ -70,22 +79,22 @@ class Films:
         return self._made
 
     def begin(self, scene: Mapping[str, Any], wanted: Any) -> None:
-        """Begin a film of a scene: {"turn": one of TURNS, "seconds": of SECONDS, "suffix": of SUFFIXES}.
+        """Begin a film of a scene: {"turn": one of `turns`, "seconds": of SECONDS, "suffix": of SUFFIXES}.
 
-        Raises InputError, also where one is being made.
+        Own frames take as long as their file says. Raises InputError, also where one is being made.
         """
         if self.making:
             raise InputError("film: one is being made; cancel it, or wait for it")
         if not isinstance(wanted, dict) or wanted.keys() != _ALLOWED.keys():
             raise InputError(f"film: found {shown(wanted)}, allowed is an object of {', '.join(_ALLOWED)}")
-        for name, allowed in _ALLOWED.items():
+        for name, allowed in {**_ALLOWED, "turn": self.turns}.items():
             if type(wanted[name]) is not type(allowed[0]) or wanted[name] not in allowed:
                 said = ", ".join(map(str, allowed))
                 raise InputError(f"film: {name}: found {shown(wanted[name])}, allowed are {said}")
         if self._made is not None:
             self._made.unlink(missing_ok=True)
             self._made = None
-        SceneFile(Scene.from_dict(_filmed(scene))).save(self.folder / "scene.json")
+        frames = self._write(_filmed(scene), wanted)
         self._progress.unlink(missing_ok=True)
         log = self._held.enter_context((self.folder / "said.txt").open("w"))
         try:
@@ -94,13 +103,28 @@ class Films:
             self._held.close()
             raise InputError(f"film: it cannot be begun ({error.strerror})") from error
         self._film = self.folder / f"film{wanted['suffix']}"
-        frames = RATE * wanted["seconds"]
         self.state = {"is": "making", "done": 0, "frames": frames, "seconds_left": None}
 
+    @property
+    def turns(self) -> tuple[str, ...]:
+        """What a film can show."""
+        return (*TURNS, OWN) if self._own else TURNS
+
+    def _write(self, scene: dict[str, Any], wanted: Mapping[str, Any]) -> int:
+        """Write the scene for the command; how many frames it makes."""
+        path = self.folder / "scene.json"
+        if self._own and wanted["turn"] == OWN:
+            self._own.of_scene(core.scene_file(json.dumps(scene)).at(0)).save(path)
+            return self._own.frames
+        SceneFile(Scene.from_dict(scene)).save(path)
+        return int(RATE * wanted["seconds"])
+
     def _command(self, wanted: Mapping[str, Any]) -> list[str]:
-        seconds = wanted["seconds"]
-        command = ["nice", sys.executable, "-P", "-m", "quadgraph.cli", "turntable", str(self.folder / "scene.json")]
-        command += ["--turn", wanted["turn"], "--frames", str(RATE * seconds), "--seconds", str(seconds)]
+        seconds, scene = wanted["seconds"], str(self.folder / "scene.json")
+        turn = ["turntable", scene, "--turn", wanted["turn"]]
+        turn += ["--frames", str(RATE * seconds), "--seconds", str(seconds)]
+        command = ["nice", sys.executable, "-P", "-m", "quadgraph.cli"]
+        command += ["render", scene, "--frames"] if wanted["turn"] == OWN else turn
         command += ["--progress", str(self._progress), "-o", str(self.folder / f"film{wanted['suffix']}")]
         return command + (["--device", self._device] if self._device else [])
 

@@ -7,7 +7,7 @@ import contextlib
 import json
 import os
 from collections.abc import Iterator
-from typing import get_args
+from typing import TYPE_CHECKING, get_args
 
 from rich.console import Console
 
@@ -16,6 +16,9 @@ from quadgraph.api.scene import Scene
 from quadgraph.base.errors import InputError
 from quadgraph.commands import own_mesh, scene_file, scene_options, scene_overrides
 from quadgraph.core import load_core
+
+if TYPE_CHECKING:
+    from quadgraph.core import SceneFile
 
 _TOKEN = "QUADGRAPH_SERVE_TOKEN"
 _LEAST_TOKEN = 16  # letters
@@ -67,10 +70,10 @@ def run(args: argparse.Namespace) -> int:
     if token and len(token) < _LEAST_TOKEN:
         raise InputError(f"{_TOKEN}: found {len(token)} letters, allowed are at least {_LEAST_TOKEN}")
     with (
-        _scene(args) as scene,
+        _scene(args) as (scene, own),
         Stage(device=args.device) as stage,
         Stamps(args.file.parent) as stamps,
-        Films(args.device) as films,
+        Films(args.device, own) as films,
     ):
         stage.show(scene)
         shown = ShownScene(scene, stage.engine.bodies, stage.engine.hosts, stamps)
@@ -85,6 +88,7 @@ def run(args: argparse.Namespace) -> int:
             "models": list(get_args(Model)),
             "brush": stage.usual_brush,
             "mirrors": stage.mirrors,
+            "films": list(films.turns),
             "box": [low.tolist(), high.tolist()],
         }
         server = Server(args.host, args.port, token, hello, stamps, films)
@@ -99,12 +103,15 @@ def run(args: argparse.Namespace) -> int:
 
 
 @contextlib.contextmanager
-def _scene(args: argparse.Namespace) -> Iterator[Scene]:
-    """The first frame of a scene file, or a body with what the options say, there as long as the block runs."""
+def _scene(args: argparse.Namespace) -> Iterator[tuple[Scene, SceneFile | None]]:
+    """The first frame of a scene file, or a body with what the options say, there as long as the block runs.
+
+    With the file where it has several frames.
+    """
     if scene_file.is_scene(args.file):
         with scene_file.opened(args.file) as (file, document):
             scene_overrides.apply(file, document, args)
-            yield Scene.from_dict(json.loads(file.at(0).json()))
+            yield Scene.from_dict(json.loads(file.at(0).json())), file if file.frames > 1 else None
         return
     with own_mesh.body(args.file, args, surface_only=args.method == "shortest-path") as body:
         document = {"body": str(body.resolve()), "material": args.material}
@@ -112,4 +119,4 @@ def _scene(args: argparse.Namespace) -> Iterator[Scene]:
         scene_overrides.put(file, document, args)
         for name, side in zip(("width", "height"), scene_options.size_of(args), strict=True):
             file.set(f"/picture/{name}", str(side))
-        yield Scene.from_dict(json.loads(file.at(0).json()))
+        yield Scene.from_dict(json.loads(file.at(0).json())), None

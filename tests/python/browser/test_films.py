@@ -89,6 +89,24 @@ def test_a_film_is_made_of_the_scene_with_even_sides_and_told_frame_by_frame(fil
     assert list(films.folder.glob("*film*")) == []
 
 
+def test_the_frames_of_the_file_are_filmed_of_the_scene_as_it_is_shown(monkeypatch):
+    turning = {"path": "/camera/azimuth", "keys": [[0, 0], [2, 40]]}
+    document = {**scene(), "frames": 3, "frames_per_second": 4, "tracks": [turning]}
+    own = quadgraph.core.scene_file(json.dumps(document))
+    with Films("cpu", own) as films:
+        assert films.turns == ("camera", "body", "light", "frames")
+        films.begin({**scene(), "material": "jade"}, {**GIF, "turn": "frames"})
+        written = json.loads((films.folder / "scene.json").read_text())
+        assert (written["material"], written["frames"], len(written["tracks"])) == ("jade", 3, 1)
+        said = followed(films)
+        assert {each["frames"] for each in said if each["is"] == "making"} == {3}
+        with Image.open(films.made) as image:
+            assert (image.n_frames, image.size, image.info["duration"]) == (3, (32, 46), 250)
+    refuses = pytest.raises(InputError, match=r"allowed are camera, body, light$")
+    with Films("cpu") as films, refuses:
+        films.begin(scene(), {**GIF, "turn": "frames"})
+
+
 @pytest.mark.parametrize(
     ("wanted", "said"),
     [

@@ -59,6 +59,7 @@ function greet(hello) {
   fill($("material"), ["", ...hello.materials], (name) => name || "(as text)");
   fill($("tone"), hello.tones, (name) => name);
   greetBrush(hello);
+  greetFilm(hello);
 }
 
 function fill(select, values, label) {
