@@ -23,8 +23,8 @@ constexpr std::array<std::string_view, gpu::PATTERNS> patterns = {"none",  "vein
                                                                   "rings", "spots", "checker", "layers"};
 constexpr std::string_view allowed_keys =
     "pattern, eta, roughness, coat, coat_eta, coat_roughness, period, sharpness, sigma_s_prime, sigma_a, or "
-    "reflectance, mean_free_path, or sigma_s "
-    "and g in place of sigma_s_prime, or g beside it, and these six after second_";
+    "reflectance, mean_free_path, or sigma_s and g in place of sigma_s_prime, or g beside it, and these six after "
+    "second_";
 constexpr std::string_view roughness_key = "roughness";
 
 std::string joined(std::span<const std::string_view> names) {

@@ -28,9 +28,7 @@ std::string material_help() {
          "scattering of mean cosine G, which g=G beside a sigma_s_prime or a name says, too; "
          "or NAME,key=value; "
          "roughness=ALPHA of the surface; coat=water, lacquer or the share that a clear layer covers, of index "
-         "coat_eta "
-         "and coat_roughness; pattern=P,period=D,sharpness=K mixes in a second set, second_sigma_a and so "
-         "on; "
+         "coat_eta and coat_roughness; pattern=P,period=D,sharpness=K mixes in a second set, second_sigma_a and so on; "
          "or a file .npz of coefficients on a grid (docs/scene.md), with a coat or none";
 }
 

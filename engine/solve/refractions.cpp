@@ -69,7 +69,6 @@ std::vector<OpticalSurface> different_surfaces(std::span<const OpticalSurface> s
 
 Refractions::Refractions(device::Device& device, std::uint32_t bodies)
     : device_(device),
-      eta_(bodies, 1.0f),
       surfaces_(bodies),
       on_device_(device, bodies * sizeof(gpu::Refraction), device::Place::device, "material/refraction of bodies"),
       reflectances_(device, bodies * gpu::REFLECTANCE_VALUES * sizeof(float), device::Place::device,
@@ -97,34 +96,40 @@ void Refractions::write() {
   boundaries_.clear();
 }
 
-bool Refractions::set(std::span<const float> eta) {
-  if (eta.size() != 1 && eta.size() != eta_.size()) {
-    throw InputError("eta: " + std::to_string(eta.size()) + " found, one for all, or one for each of " +
-                     std::to_string(eta_.size()) + " bodies wanted");
-  }
-  for (const float index : eta) check_eta(static_cast<double>(index));
-  std::vector<float> wanted(eta.begin(), eta.end());
-  if (wanted.size() == 1) wanted.assign(eta_.size(), eta[0]);
-  if (wanted == eta_) return false;
-  eta_ = std::move(wanted);
-  for (std::size_t i = 0; i < eta_.size(); ++i) surfaces_[i].eta = double{eta_[i]};
+std::vector<float> Refractions::eta() const {
+  std::vector<float> found;
+  for (const OpticalSurface& surface : surfaces_) found.push_back(static_cast<float>(surface.eta));
+  return found;
+}
+
+bool Refractions::take(std::vector<OpticalSurface> wanted) {
+  if (wanted == surfaces_) return false;
+  surfaces_ = std::move(wanted);
   write();
   return true;
 }
 
+bool Refractions::set(std::span<const float> eta) {
+  if (eta.size() != 1 && eta.size() != surfaces_.size()) {
+    throw InputError("eta: " + std::to_string(eta.size()) + " found, one for all, or one for each of " +
+                     std::to_string(surfaces_.size()) + " bodies wanted");
+  }
+  for (const float index : eta) check_eta(static_cast<double>(index));
+  std::vector<OpticalSurface> wanted = surfaces_;
+  for (std::size_t i = 0; i < wanted.size(); ++i) wanted[i].eta = double{eta[eta.size() == 1 ? 0 : i]};
+  return take(std::move(wanted));
+}
+
 bool Refractions::set_coats(std::span<const Coat> coats) {
-  if (coats.size() > 1 && coats.size() != eta_.size()) {
+  if (coats.size() > 1 && coats.size() != surfaces_.size()) {
     throw InputError("coats: " + std::to_string(coats.size()) + " found, one for all, or one for each of " +
-                     std::to_string(eta_.size()) + " bodies wanted");
+                     std::to_string(surfaces_.size()) + " bodies wanted");
   }
   std::vector<OpticalSurface> wanted = surfaces_;
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     wanted[i].coat = coats.empty() ? Coat{} : coats[coats.size() == 1 ? 0 : i];
   }
-  if (wanted == surfaces_) return false;
-  surfaces_ = std::move(wanted);
-  write();
-  return true;
+  return take(std::move(wanted));
 }
 
 std::vector<std::uint32_t> Refractions::head(std::uint32_t faces) const {
@@ -135,7 +140,7 @@ std::vector<std::uint32_t> Refractions::head(std::uint32_t faces) const {
 std::size_t Refractions::first_of(Method method, Source source, Model model) const {
   const std::size_t by_source =
       static_cast<std::size_t>(method) * value_count<Source> + static_cast<std::size_t>(source);
-  return eta_.size() * (by_source * value_count<Model> + static_cast<std::size_t>(model));
+  return surfaces_.size() * (by_source * value_count<Model> + static_cast<std::size_t>(model));
 }
 
 const BodyBoundaries& Refractions::boundaries(Method method, Source source, Model model) {

@@ -39,7 +39,7 @@ class Refractions {
   // The same of coats; those of bodies that nothing is said of are none. Throws InputError on another number of them.
   bool set_coats(std::span<const Coat> coats);
 
-  std::span<const float> eta() const { return eta_; }                     // by body
+  std::vector<float> eta() const;                                         // by body
   std::span<const OpticalSurface> surfaces() const { return surfaces_; }  // the same
   // gpu::Refraction by body; where it lies does not change.
   const device::Buffer& on_device() const { return on_device_; }
@@ -50,11 +50,11 @@ class Refractions {
   const BodyBoundaries& boundaries(Method method, Source source, Model model);
 
  private:
+  bool take(std::vector<OpticalSurface> wanted);
   void write();
   std::size_t first_of(Method method, Source source, Model model) const;
 
   device::Device& device_;
-  std::vector<float> eta_;
   std::vector<OpticalSurface> surfaces_;
   device::Buffer on_device_;
   device::Buffer reflectances_;  // REFLECTANCE_VALUES for each surface that differs from those before

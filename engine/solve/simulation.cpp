@@ -82,7 +82,7 @@ std::span<const OpticalSurface> Simulation::surfaces() const {
   return implementation_->refractions.surfaces();
 }
 
-std::span<const float> Simulation::eta() const {
+std::vector<float> Simulation::eta() const {
   implementation_->coefficients.check();
   return implementation_->refractions.eta();
 }

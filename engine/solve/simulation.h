@@ -99,7 +99,7 @@ class Simulation {
   std::span<const OpticalSurface> surfaces() const;
   // Indices of refraction of what was set, by body. Throws InputError before that, or if a level of set_optical is
   // missing.
-  std::span<const float> eta() const;
+  std::vector<float> eta() const;
 
   // The beams that light is made of, whose offsets need not be set. level.beam_q then has room for what they store;
   // whoever fills beam_q and q on the device calls irradiance_changed. Both are zero after a change of that room.

@@ -26,9 +26,9 @@ struct EnvironmentImage {
   Environment environment;
   std::vector<glm::vec3> pictures;
   device::Buffer texels;  // the same
-  std::vector<OpticalSurface>
-      surfaces{};  // what the pictures are for: from ENVIRONMENT_ENTERING on; of index 0: none yet
-  float roughness = 0, placed_roughness = 0, coat_roughness = 0;  // the same; 0: none yet
+  // What the pictures are for, 0 where there is none yet: from ENVIRONMENT_ENTERING on, and those before.
+  std::vector<OpticalSurface> surfaces{};
+  float roughness = 0, placed_roughness = 0, coat_roughness = 0;
 };
 
 class LightImages {

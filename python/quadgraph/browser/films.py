@@ -1,5 +1,6 @@
-"""Films that pages ask for: one at a time, made by `quadgraph turntable` in a process of its own, which comes after the
-frames of the session.
+"""Films that pages ask for: one at a time, made by `quadgraph turntable`, or `render`, in a process of its own.
+
+It comes after the frames of the session.
 """
 
 from __future__ import annotations

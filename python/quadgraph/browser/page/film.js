@@ -29,13 +29,14 @@ function hearFilm(film) {
   if (!making) awaits = false;
 }
 
-// What a film can show; that frames of the file take as long as it says.
+// What a film can show.
 function greetFilm(hello) {
   for (const option of $("film-turn").options) option.hidden = !hello.films.includes(option.value);
-  $("film-turn").addEventListener("change", () => ($("film-seconds").disabled = $("film-turn").value === "frames"));
 }
 
 function listenFilm() {
+  // Frames of the file take as long as it says.
+  $("film-turn").addEventListener("change", () => ($("film-seconds").disabled = $("film-turn").value === "frames"));
   $("save-film").addEventListener("click", () => {
     awaits = true;
     trouble("");
