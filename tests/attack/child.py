@@ -61,16 +61,23 @@ def environment(case: Case, folder: Path, mark: str) -> dict[str, str]:
     return kept | own | dict(case.environment)
 
 
+def _threads(pid: int) -> list[str]:
+    try:
+        return os.listdir(f"/proc/{pid}/task")
+    except OSError:  # it has ended
+        return []
+
+
 def descendants(pid: int) -> list[int]:
     """A process and all below it."""
     found, waiting = [], [pid]
     while waiting:
         each = waiting.pop()
         found.append(each)
-        for task in Path(f"/proc/{each}/task").glob("*/children"):
+        for task in _threads(each):
             try:
-                waiting += map(int, task.read_text().split())
-            except (OSError, ValueError):
+                waiting += map(int, Path(f"/proc/{each}/task/{task}/children").read_text().split())
+            except OSError:
                 continue
     return found
 
@@ -187,7 +194,7 @@ class Watch:
             self.heeded = now
         if self.heeded is not None and now - self.heeded >= self.signals[0][0]:
             self.first = self.first or (now, computed)
-            self.process.send_signal(self.signals.pop(0)[1])
+            os.kill(self.process.pid, self.signals.pop(0)[1])  # send_signal would reap one that has just ended
 
     def finish(self, usage: resource.struct_rusage, streams: list[Stream]) -> Outcome:
         """The outcome, once the child has ended."""

@@ -146,7 +146,7 @@ def _points_in(surface: Surface, grid: int) -> Iterator[tuple[slice, np.ndarray]
 
 
 def brightness(scattering: np.ndarray, absorption: np.ndarray) -> np.ndarray:
-    """Share of diffuse light that a half-space sends back at index 1, within .01 [van de Hulst 1980]."""
+    """Share of diffuse light that a half-space sends back at index 1, within .01 [Hulst 1980]."""
     albedo = scattering / np.maximum(scattering + absorption, 1e-30)
     s = np.sqrt(np.clip(1 - albedo, 0, 1))
     return (1 - s) * (1 - 0.139 * s) / (1 + 1.17 * s)

@@ -11,7 +11,10 @@ import tempfile
 import threading
 import time
 from collections.abc import Callable
+from importlib.abc import MetaPathFinder
+from pathlib import Path
 from types import FrameType
+from typing import NoReturn
 
 from quadgraph.base.errors import QuadGraphError
 from quadgraph.base.message import ERROR, shortened
@@ -23,47 +26,83 @@ class Stopped(KeyboardInterrupt):
     """TERM or HUP, which clean up as Ctrl-C does."""
 
 
-_SENT: list[int] = []  # signals that were heeded in this run
 _AGAIN = 0.02  # s, after which a signal is sent again that came in an import
+_IMPORTLIB = "<frozen importlib"
+_OURS = str(Path(__file__).parents[1]) + os.sep
 _SETTLING = 1.0  # s after a signal in which another one would meet the cleaning up
 
 
 def heed_signals() -> None:
     """Let TERM and HUP end the program as Ctrl-C does, where they are not ignored or somebody else's.
 
-    All three wait until what is being imported is: modules make errors of their own of an interrupt, or forget it.
+    All three wait while a module of others is imported: those make errors of their own of an interrupt, or forget it.
     Another one within a second says nothing new.
     """
     if threading.current_thread() is not threading.main_thread():
         return
 
-    heeded = -math.inf
-
-    def again(_number: int, _frame: FrameType | None) -> None:
-        signal.raise_signal(_SENT[0])
-
-    def stop(number: int, frame: FrameType | None) -> None:
-        nonlocal heeded
-        if time.monotonic() < heeded + _SETTLING:
-            return
-        _SENT.append(number)
-        if _in_import(frame):
-            signal.signal(signal.SIGALRM, again)
-            signal.setitimer(signal.ITIMER_REAL, _AGAIN)
-        else:
-            heeded = time.monotonic()
-            signal.setitimer(signal.ITIMER_REAL, 0)
-            raise KeyboardInterrupt if number == signal.SIGINT else Stopped(number)
-
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         if signal.getsignal(number) in (signal.SIG_DFL, signal.default_int_handler):
-            signal.signal(number, stop)
+            signal.signal(number, _SIGNALS.stop)
 
 
-def _in_import(frame: FrameType | None) -> bool:
-    while frame is not None and frame.f_code.co_filename != "<frozen importlib._bootstrap>":
+class _Signals(MetaPathFinder):
+    """Raises a signal as an exception where that can be: at once, or where a module of ours is about to import another.
+
+    A command imports for half a second, and a timer hardly ever meets the moments between two imports.
+    """
+
+    def __init__(self) -> None:
+        self.sent: list[int] = []  # those that were heeded in this run
+        self._raised = -math.inf
+
+    def stop(self, number: int, frame: FrameType | None) -> None:
+        """Heed a signal, later where something is being imported."""
+        if time.monotonic() < self._raised + _SETTLING:
+            return
+        self.sent.append(number)
+        if _importing(frame):
+            signal.signal(signal.SIGALRM, self._again)
+            signal.setitimer(signal.ITIMER_REAL, _AGAIN)
+            if self not in sys.meta_path:
+                sys.meta_path.insert(0, self)
+        else:
+            self._raise(number)
+
+    def find_spec(self, *_: object) -> None:
+        """Find nothing: this is called before a module is looked for."""
+        ours = all(file.startswith(_OURS) for file in _importing(sys._getframe(1)))
+        if ours and threading.current_thread() is threading.main_thread():
+            self._raise(self.sent[0])
+
+    def forget(self) -> None:
+        """Wait no longer for an import."""
+        if self.sent:  # else the timer may be somebody else's
+            signal.setitimer(signal.ITIMER_REAL, 0)
+        if self in sys.meta_path:
+            sys.meta_path.remove(self)
+
+    def _again(self, _number: int, frame: FrameType | None) -> None:
+        self.stop(self.sent[0], frame)
+
+    def _raise(self, number: int) -> NoReturn:
+        self._raised = time.monotonic()
+        self.forget()
+        raise KeyboardInterrupt if number == signal.SIGINT else Stopped(number)
+
+
+_SIGNALS = _Signals()
+
+
+def _importing(frame: FrameType | None) -> list[str]:
+    """Files of the modules that are being imported, and of who imports the outermost; none where nothing is."""
+    files, last = [], 0
+    while frame is not None:
+        files.append(frame.f_code.co_filename)
+        if files[-1].startswith(_IMPORTLIB):
+            last = len(files) + 1
         frame = frame.f_back
-    return frame is not None
+    return [file for file in files[:last] if not file.startswith(_IMPORTLIB)]
 
 
 def ended(run: Callable[[], int]) -> int:
@@ -71,7 +110,7 @@ def ended(run: Callable[[], int]) -> int:
 
     Errors of ours and of the system are said in one line on standard error; all others are raised.
     """
-    _SENT.clear()
+    _SIGNALS.sent.clear()
     heed_signals()
     _print_any_character()
     try:
@@ -81,8 +120,7 @@ def ended(run: Callable[[], int]) -> int:
     except Exception as error:
         return _failed(error)
     finally:
-        if _SENT:  # one that still waits for an import would come when Python has no handler any more
-            signal.setitimer(signal.ITIMER_REAL, 0)
+        _SIGNALS.forget()  # one that still waits would come when Python has no handler any more
 
 
 def _print_any_character() -> None:
@@ -93,7 +131,7 @@ def _print_any_character() -> None:
 
 def _interrupted() -> int:
     print("quadgraph: interrupted", file=sys.stderr)
-    return 128 + _SENT[0] if _SENT else INTERRUPTED
+    return 128 + _SIGNALS.sent[0] if _SIGNALS.sent else INTERRUPTED
 
 
 def _failed(error: Exception) -> int:

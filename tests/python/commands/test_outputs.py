@@ -120,6 +120,27 @@ def test_a_signal_during_an_import_is_heeded_after_it(tmp_path, name, kind):
     assert done.stdout == f"{kind} True\n", done.stderr
 
 
+AMID = """
+import os, signal, sys
+from quadgraph import cli
+
+class Sends:
+    def find_spec(self, name, *_):
+        if name == "scipy.sparse._base":
+            os.kill(os.getpid(), signal.SIGTERM)
+
+sys.meta_path.insert(0, Sends())
+print(cli.main(["shapes", "body.qgraph", "frame.ply", "-o", "out.qshapes"]))
+print([name in sys.modules for name in ("scipy.sparse", "trimesh", "quadgraph.file.shapes_file")])
+"""
+
+
+def test_a_signal_waits_for_one_module_of_others_and_not_for_all(tmp_path):
+    """What a command imports takes half a second, and seconds on a machine at work: it ends between two of them."""
+    done = run_script(AMID, tmp_path)
+    assert done.stdout == f"{128 + signal.SIGTERM}\n[True, False, False]\n", done.stderr
+
+
 WAITING = """
 import os, signal, time
 from quadgraph.base import program

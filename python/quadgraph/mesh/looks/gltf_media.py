@@ -18,6 +18,7 @@ from quadgraph.base.errors import InputError
 from quadgraph.mesh.looks.parts import StatedMedium
 
 DARKEST = 1e-3  # an attenuation colour below it is taken as it, or nothing would ever pass
+SHARPEST = 0.999  # anisotropy: Khronos's own ScatterAnisotropy goes to the ends, which no phase function reaches
 _DEFAULT_ETA = 1.5  # of a dielectric in glTF
 CLEAR_COAT = "KHR_materials_clearcoat"  # ratified: of index 1.5
 
@@ -137,7 +138,7 @@ def _scattering(where: str, extensions: dict[str, Any]) -> tuple[np.ndarray, flo
         key = "multiscatterColor" if "multiscatterColor" in said else "multiscatterColorFactor"
         many = np.array(numbers_of(here, said, key, (white,) * 3, 0, 1))
         many *= number_of(here, said, "scatterStrengthFactor", strength, 0, 1)
-        g = number_of(here, said, "scatterAnisotropy", 0.0, -0.999, 0.999)
+        g = max(-SHARPEST, min(SHARPEST, number_of(here, said, "scatterAnisotropy", 0.0, -1, 1)))
         return single_scatter_albedo(many, g if name == "KHR_materials_scatter" else 0.0), g
     return None
 
