@@ -44,7 +44,9 @@ void Viewer::converge() {
 
 void Viewer::begin_convergence() {
   const Scene& scene = making_->scene;
+  const device::Interruptible scope(engine().device());  // making an engine takes long
   if (!rest_) rest_.emplace(stage_.shared_device());
+  rest_->take_up(stage_.loaded());
   rest_->show(scene);
   ConvergingStart start{scene.view, scene.render, scene.solve, measured_.solve, *measured_.picture_error};
   start.render.width = shown_part_.width;

@@ -9,7 +9,6 @@
 namespace quadgraph {
 namespace {
 
-constexpr std::chrono::milliseconds hearing_pause{10};
 constexpr std::chrono::milliseconds answer_pause{30};  // between two frames that answer
 // Between two draws of points a solve ends for nothing; half-way the engine loses what it had derived.
 constexpr std::chrono::milliseconds patience_half_way{50};

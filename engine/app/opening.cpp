@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <future>
 #include <thread>
 
 #include "engine/app/environment_section.h"
@@ -96,6 +97,13 @@ void Viewer::open_file(const std::filesystem::path& file) {
   frames_wanted_ = 3;
 }
 
+// Beside what is shown and goes on being heard. Throws Interrupted where the window closes meanwhile.
+Stage::Loaded Viewer::load_meanwhile(const std::filesystem::path& body) {
+  std::future<Stage::Loaded> loaded = std::async(std::launch::async, [&] { return Stage::load(body); });
+  while (loaded.wait_for(hearing_pause) != std::future_status::ready) hear(false);
+  return loaded.get();
+}
+
 // In the place of what is shown, which comes back where it cannot be shown.
 void Viewer::show_opened(const Scene& scene, const std::optional<SceneFile>& frames) {
   const Scene before = state_.scene;
@@ -109,6 +117,7 @@ void Viewer::show_opened(const Scene& scene, const std::optional<SceneFile>& fra
     making_.reset();
   };
   try {
+    stage_.take_up(load_meanwhile(scene.body));
     show(scene);
   } catch (const DeviceError&) {
     throw;

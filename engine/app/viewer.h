@@ -45,6 +45,7 @@ class Viewer {
  private:
   using Clock = std::chrono::steady_clock;
   static constexpr double settle_after = 0.25;  // seconds without a change
+  static constexpr std::chrono::milliseconds hearing_pause{10};
 
   // The part of the window that shows the picture, pixels.
   struct Part {
@@ -114,6 +115,7 @@ class Viewer {
   bool replaces_work() const;
   bool opens() const { return !state_.opening.empty() && !state_.asks; }
   void open_file(const std::filesystem::path& file);
+  Stage::Loaded load_meanwhile(const std::filesystem::path& body);
   void show_opened(const Scene& scene, const std::optional<SceneFile>& frames);
   Scene wanted_scene() const;
   void turn();

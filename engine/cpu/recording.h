@@ -25,7 +25,7 @@ class Recording : public device::Recording {
 
   void copy(const device::Memory& source, const device::Memory& target, std::uint64_t bytes,
             std::uint64_t target_offset, std::uint64_t source_offset) override {
-    share_out(processor_.threads(), bytes, [&](std::uint64_t begin, std::uint64_t end) {
+    share_out(bytes, [&](std::uint64_t begin, std::uint64_t end) {
       std::memcpy(bytes_of(target) + target_offset + begin, bytes_of(source) + source_offset + begin, end - begin);
     });
   }
@@ -47,7 +47,7 @@ class Recording : public device::Recording {
 
   void fill(const device::Memory& target, std::uint64_t bytes, std::uint32_t value) override {
     auto* words = reinterpret_cast<std::uint32_t*>(bytes_of(target));
-    share_out(processor_.threads(), bytes, [&](std::uint64_t begin, std::uint64_t end) {
+    share_out(bytes, [&](std::uint64_t begin, std::uint64_t end) {
       std::fill(words + begin / 4, words + (end + 3) / 4, value);
     });
   }
@@ -59,22 +59,10 @@ class Recording : public device::Recording {
   void dispatch(const device::Pipeline& pass, const void* push, std::uint32_t groups) override {
     const auto& pipeline = static_cast<const ComputePipeline&>(pass);
     const std::uint32_t part = std::max(groups / (parts_of_thread * processor_.threads().threads()), 1u);
-    const auto caller = std::this_thread::get_id();
-    std::atomic<bool> given_up = false;
-    std::exception_ptr why;
-    const auto run_part = [&](std::uint32_t begin, std::uint32_t end) {
-      if (given_up.load(std::memory_order_relaxed)) return;
-      pipeline.kernel(push, groups, begin, end, pipeline.variant);
-      if (std::this_thread::get_id() != caller) return;
-      try {
-        processor_.heed();
-      } catch (...) {
-        why = std::current_exception();
-        given_up.store(true, std::memory_order_relaxed);
-      }
-    };
-    processor_.threads().run(groups, part, run_part, [] { PendingSums::of_thread().write(); });
-    if (why) std::rethrow_exception(why);
+    run(
+        groups, part,
+        [&](std::uint32_t begin, std::uint32_t end) { pipeline.kernel(push, groups, begin, end, pipeline.variant); },
+        [] { PendingSums::of_thread().write(); });
   }
 
   void dispatch_indirect(const device::Pipeline& pass, const void* push, const device::Memory& arguments,
@@ -118,13 +106,34 @@ class Recording : public device::Recording {
 
   static std::byte* bytes_of(const device::Memory& memory) { return static_cast<std::byte*>(memory.mapped); }
 
+  // ThreadPool::run, but the caller heeds the device's check between its parts; what that throws leaves out the rest.
+  template <typename Work>
+  void run(std::uint32_t count, std::uint32_t part, const Work& work, const std::function<void()>& last = {}) {
+    const auto caller = std::this_thread::get_id();
+    std::atomic<bool> given_up = false;
+    std::exception_ptr why;
+    const auto run_part = [&](std::uint32_t begin, std::uint32_t end) {
+      if (given_up.load(std::memory_order_relaxed)) return;
+      work(begin, end);
+      if (std::this_thread::get_id() != caller) return;
+      try {
+        processor_.heed();
+      } catch (...) {
+        why = std::current_exception();
+        given_up.store(true, std::memory_order_relaxed);
+      }
+    };
+    processor_.threads().run(count, part, run_part, last);
+    if (why) std::rethrow_exception(why);
+  }
+
   // Calls part(begin, end) for all of `bytes`.
   template <typename Part>
-  static void share_out(ThreadPool& threads, std::uint64_t bytes, const Part& part) {
-    const auto parts = static_cast<std::uint32_t>((bytes + copied_at_once - 1) / copied_at_once);
-    threads.run(parts, 1, [&](std::uint32_t begin, std::uint32_t end) {
-      part(begin * copied_at_once, std::min(end * copied_at_once, bytes));
-    });
+  void share_out(std::uint64_t bytes, const Part& part) {
+    run(static_cast<std::uint32_t>((bytes + copied_at_once - 1) / copied_at_once), 1,
+        [&](std::uint32_t begin, std::uint32_t end) {
+          part(begin * copied_at_once, std::min(end * copied_at_once, bytes));
+        });
   }
 
   Processor& processor_;

@@ -37,6 +37,16 @@ std::unique_ptr<ImageMemory> allocated(Device& device, const ImageOptions& optio
   return device.allocate(options, name);
 }
 
+// Between memory that the host sees, in parts, as large as takes it a few milliseconds.
+void copy(Device& device, void* target, const void* source, std::size_t size) {
+  constexpr std::size_t part = std::size_t{8} << 20;
+  for (std::size_t offset = 0; offset < size; offset += part) {
+    device.heed();
+    std::memcpy(static_cast<std::byte*>(target) + offset, static_cast<const std::byte*>(source) + offset,
+                std::min(part, size - offset));
+  }
+}
+
 // Calls move(staging, offset, bytes) for parts that staging memory has room for.
 template <typename Move>
 void in_parts(Device& device, std::size_t size, const Move& move) {
@@ -65,11 +75,8 @@ void write_bytes(Device& device, const Buffer& target, std::span<const std::byte
     throw InputError("buffer holds " + std::to_string(target.size()) + " bytes, got " + std::to_string(data.size()));
   }
   if (data.empty()) return;
+  if (target.mapped() != nullptr) return copy(device, target.mapped(), data.data(), data.size());
   device.heed();
-  if (target.mapped() != nullptr) {
-    std::memcpy(target.mapped(), data.data(), data.size());
-    return;
-  }
   if (data.size() <= largest_update && data.size() % 4 == 0) {
     device.update(target.memory(), data);
     return;
@@ -88,10 +95,7 @@ void read_bytes(Device& device, const Buffer& source, std::span<std::byte> targe
                      std::to_string(target.size()));
   }
   if (target.empty()) return;
-  if (source.mapped() != nullptr) {
-    std::memcpy(target.data(), source.mapped(), target.size());
-    return;
-  }
+  if (source.mapped() != nullptr) return copy(device, target.data(), source.mapped(), target.size());
   in_parts(device, target.size(), [&](const Memory& staging, std::size_t offset, std::size_t bytes) {
     Commands commands(device);
     commands.copy(source, offset, staging, bytes);

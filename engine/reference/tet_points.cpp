@@ -8,12 +8,13 @@
 
 namespace quadgraph {
 
-std::vector<glm::vec3> points_in_tets(const Level& level) {
+std::vector<glm::vec3> points_in_tets(const Level& level, const Listener& listener) {
   std::vector<glm::vec3> points;
   const std::size_t count = level.tets.size();
   points.reserve(points_of_a_tet * count);
   std::uint32_t drawn = 0;
   for (std::size_t i = 0; i < points_of_a_tet * count; ++i) {
+    heed(listener, i);
     const glm::uvec4& tet = level.tets[i % count];
     std::array<double, 4> weight{};  // exponential variates over their sum are even on the simplex
     for (double& each : weight) each = -std::log((0.5 + static_cast<double>(gpu::hash(drawn++))) * 0x1p-32);

@@ -36,7 +36,8 @@ Neighbours neighbours_of(const Level& level) {
 }
 
 // Of each vertex the nearest of `sources`, by spreading over the edges of the tets; itself where none is reached.
-std::vector<std::uint32_t> nearest_of(const Level& level, std::span<const std::uint32_t> sources) {
+std::vector<std::uint32_t> nearest_of(const Level& level, std::span<const std::uint32_t> sources,
+                                      const Listener& listener) {
   std::vector<std::uint32_t> nearest(level.vertices.size(), none);
   // Distance, vertex, surface vertex: equal distances are settled by number, so that the answer is one.
   using Offer = std::tuple<double, std::uint32_t, std::uint32_t>;
@@ -45,7 +46,8 @@ std::vector<std::uint32_t> nearest_of(const Level& level, std::span<const std::u
   std::vector<Offer> best(level.vertices.size(), nothing);
   for (const std::uint32_t source : sources) offers.emplace(0.0, source, source);
   const Neighbours around = neighbours_of(level);
-  while (!offers.empty()) {
+  for (std::size_t taken = 0; !offers.empty(); ++taken) {
+    heed(listener, taken);
     const auto [distance, v, s] = offers.top();
     offers.pop();
     if (nearest[v] != none) continue;
@@ -109,7 +111,7 @@ std::vector<glm::dvec3> open_normals(const Level& level) {
   return normal;
 }
 
-std::vector<std::uint32_t> nearest_boundary(const Level& level) {
+std::vector<std::uint32_t> nearest_boundary(const Level& level, const Listener& listener) {
   std::vector<std::uint32_t> sources;
   for (std::uint32_t t = 0; t < level.tet_count(); ++t) {
     for (int k = 0; k < 4; ++k) {
@@ -121,14 +123,16 @@ std::vector<std::uint32_t> nearest_boundary(const Level& level) {
   if (sources.empty()) return {};
   const std::vector<std::uint32_t> open = open_vertices(level);
   sources.insert(sources.end(), open.begin(), open.end());
-  return nearest_of(level, sources);
+  return nearest_of(level, sources, listener);
 }
 
-VertexStarts vertex_starts(const Level& level) {
-  VertexStarts result{nearest_of(level, open_vertices(level)), std::vector<std::uint32_t>(level.vertices.size(), 0)};
+VertexStarts vertex_starts(const Level& level, const Listener& listener) {
+  VertexStarts result{nearest_of(level, open_vertices(level), listener),
+                      std::vector<std::uint32_t>(level.vertices.size(), 0)};
   const std::vector<glm::dvec3> normal = open_normals(level);
   std::vector<double> best(level.vertices.size(), -std::numeric_limits<double>::infinity());
   for (std::uint32_t t = 0; t < level.tet_count(); ++t) {
+    heed(listener, t);
     for (int k = 0; k < 4; ++k) {
       const std::uint32_t v = level.tets[t][k];
       const double inside = inside_by(level, level.tets[t], k, normal[result.nearest[v]]);

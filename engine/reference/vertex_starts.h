@@ -6,6 +6,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "engine/base/listener.h"
 #include "engine/file/graph.h"
 
 namespace quadgraph {
@@ -20,10 +21,10 @@ struct VertexStarts {
   std::vector<std::uint32_t> start;
 };
 
-VertexStarts vertex_starts(const Level& level);
+VertexStarts vertex_starts(const Level& level, const Listener& listener = {});
 
 // As VertexStarts::nearest, of the open faces and of those that two bodies share; empty where no two share any.
-std::vector<std::uint32_t> nearest_boundary(const Level& level);
+std::vector<std::uint32_t> nearest_boundary(const Level& level, const Listener& listener = {});
 
 // Unit outward normals, the area-weighted means of the open faces around; 0 at vertices without.
 std::vector<glm::dvec3> open_normals(const Level& level);

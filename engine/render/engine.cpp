@@ -16,12 +16,20 @@ Engine::Engine(const std::filesystem::path& path, const device::DeviceOptions& d
     : Engine(path, open_device(device)) {}
 
 Engine::Engine(const std::filesystem::path& path, std::shared_ptr<device::Device> device)
-    : implementation_(std::make_unique<Implementation>(path, std::move(device))) {}
+    : Engine(std::make_shared<const QuadGraph>(QuadGraph::load(path)), path, std::move(device)) {}
+
+Engine::Engine(std::shared_ptr<const QuadGraph> body, const std::filesystem::path& path,
+               std::shared_ptr<device::Device> device)
+    : implementation_(std::make_unique<Implementation>(std::move(body), path, std::move(device))) {}
 
 Engine::~Engine() = default;
 
 const QuadGraph& Engine::graph() const {
   return implementation_->graph;
+}
+
+const std::shared_ptr<const QuadGraph>& Engine::shared_graph() const {
+  return implementation_->shared_graph;
 }
 
 device::Device& Engine::device() const {
@@ -293,6 +301,7 @@ std::optional<ErrorEstimate> Engine::picture_error() {
   const auto turn = implementation_->in_use.take();
   auto& self = *implementation_;
   if (!self.shown_error && self.report && self.report->error) {
+    const device::Interruptible scope(self.device);
     self.shown_error = quadgraph::picture_error(self.device, self.shown(), *self.report->error);
   }
   return self.shown_error;

@@ -104,11 +104,15 @@ class Engine {
   // Loads a .qgraph onto a device. Throws FormatError, InputError, DeviceError.
   explicit Engine(const std::filesystem::path& path, const device::DeviceOptions& device = {});
   Engine(const std::filesystem::path& path, std::shared_ptr<device::Device> device);
+  // Of what has been loaded from there.
+  Engine(std::shared_ptr<const QuadGraph> body, const std::filesystem::path& path,
+         std::shared_ptr<device::Device> device);
   ~Engine();
   Engine(const Engine&) = delete;
   Engine& operator=(const Engine&) = delete;
 
   const QuadGraph& graph() const;
+  const std::shared_ptr<const QuadGraph>& shared_graph() const;
   device::Device& device() const;
   Simulation& simulation();      // throws InputError where the file is a surface without levels
   const Sphere& bounds() const;  // of the display mesh in its present shape

@@ -26,9 +26,11 @@
 namespace quadgraph {
 
 struct Engine::Implementation {
-  Implementation(const std::filesystem::path& path, std::shared_ptr<device::Device> shared)
+  Implementation(std::shared_ptr<const QuadGraph> body, const std::filesystem::path& path,
+                 std::shared_ptr<device::Device> shared)
       : source(path.filename().string()),
-        graph(QuadGraph::load(path)),
+        shared_graph(std::move(body)),
+        graph(*shared_graph),
         bounds(bounds_of(graph)),
         owned(std::move(shared)),
         device(*owned),
@@ -47,7 +49,8 @@ struct Engine::Implementation {
 
   InUse in_use{"engine"};
   std::string source;
-  QuadGraph graph;
+  std::shared_ptr<const QuadGraph> shared_graph;
+  const QuadGraph& graph;
   Sphere bounds;
   std::shared_ptr<device::Device> owned;
   device::Device& device;

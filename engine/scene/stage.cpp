@@ -1,5 +1,7 @@
 #include "engine/scene/stage.h"
 
+#include <utility>
+
 #include "engine/base/error.h"
 #include "engine/devices/open_device.h"
 #include "engine/scene/measured_error.h"
@@ -7,12 +9,18 @@
 
 namespace quadgraph {
 
+Stage::Loaded Stage::load(const std::filesystem::path& path) {
+  return {path, std::make_shared<const QuadGraph>(QuadGraph::load(path))};
+}
+
 void Stage::show(const Scene& scene) {
   const auto turn = in_use_.take();
   const bool fresh = !engine_ || scene.body != scene_.body;
   if (fresh) {
     engine_.reset();  // two bodies need not fit beside each other
-    engine_ = std::make_unique<Engine>(scene.body, device_ ? device_ : open_device(options_));
+    if (loaded_.path != scene.body) loaded_ = load(scene.body);
+    engine_ = std::make_unique<Engine>(std::exchange(loaded_, {}).body, scene.body,
+                                       device_ ? device_ : open_device(options_));
     scene_ = {};
     scene_.body = scene.body;
   }

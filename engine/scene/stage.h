@@ -16,6 +16,19 @@ class Stage {
   explicit Stage(const device::DeviceOptions& options = {}) : options_(options) {}
   explicit Stage(std::shared_ptr<device::Device> device) : device_(std::move(device)) {}
 
+  // A body that has been loaded: a scene of this file is shown with it.
+  struct Loaded {
+    std::filesystem::path path;
+    std::shared_ptr<const QuadGraph> body;
+  };
+
+  // Throws FormatError, InputError.
+  static Loaded load(const std::filesystem::path& path);
+  void take_up(Loaded body) { loaded_ = std::move(body); }
+
+  // The body that is shown. Throws InputError before a scene was.
+  Loaded loaded() { return {scene_.body, engine().shared_graph()}; }
+
   // Sets on the engine what differs from the scene before; another body gets another engine. Throws FormatError,
   // InputError, DeviceError; the scene before then stays as far as it was not changed.
   void show(const Scene& scene);
@@ -42,6 +55,7 @@ class Stage {
   InUse in_use_{"stage"};
   device::DeviceOptions options_;
   std::shared_ptr<device::Device> device_;  // null: by the options
+  Loaded loaded_;                           // for the next scene
   std::unique_ptr<Engine> engine_;
   Scene scene_;
   std::string map_report_;

@@ -65,13 +65,13 @@ void assemble_fv(Workspace& work, const LevelBuffers& level, const BodyBoundarie
                              level.tet_count * (sizeof(glm::uvec4) + 4 * vec3_bytes));
 }
 
-void measure(Workspace& work, const LevelBuffers& level, OperatorBuffers& op) {
+void measure(Workspace& work, const LevelBuffers& level, LevelElements& elements) {
   const gpu::ShapePush push{.vertices = level.vertices.address(),
                             .tets = level.tets.address(),
                             .faces = level.faces.address(),
                             .etendue = level.etendue.address(),
-                            .tet_shape = op.tet_shape.address(),
-                            .face_area = op.face_area.address(),
+                            .tet_shape = elements.tet_shape.address(),
+                            .face_area = elements.face_area.address(),
                             .tet_count = level.tet_count,
                             .face_count = level.face_count,
                             .least = level.least};
@@ -79,50 +79,54 @@ void measure(Workspace& work, const LevelBuffers& level, OperatorBuffers& op) {
                               level.face_count * (sizeof(glm::uvec3) + 3 * vec3_bytes + sizeof(float));
   work.recorder.dispatch(work.passes.of(shader::shape), push, std::max(level.tet_count, level.face_count), "shape",
                          bytes);
-  op.measured = true;
+  elements.measured = true;
 }
 
 void assemble_even(Workspace& work, const LevelBuffers& level, const BodyBoundaries& boundaries, OperatorBuffers& op) {
-  const gpu::AssembleEvenPush push{.rows = op.rows(),
-                                   .optical = level.optical.address(),
-                                   .entry_shape = op.entry_shape.address(),
-                                   .entry_area = op.entry_area.address(),
-                                   .row_shape = op.row_shape.address(),
-                                   .boundaries = boundaries.on_device,
-                                   .count = op.count,
-                                   .area_count = static_cast<std::uint32_t>(op.entry_area.size() / sizeof(float))};
+  const LevelElements& elements = *op.elements;
+  const gpu::AssembleEvenPush push{
+      .rows = op.rows(),
+      .optical = level.optical.address(),
+      .entry_shape = elements.entry_shape.address(),
+      .entry_area = elements.entry_area.address(),
+      .row_shape = elements.row_shape.address(),
+      .boundaries = boundaries.on_device,
+      .count = op.count,
+      .area_count = static_cast<std::uint32_t>(elements.entry_area.size() / sizeof(float))};
   work.recorder.dispatch(work.passes.of(shader::assemble_even, op.model, op.format), push, op.count, "assembly",
-                         op.entry_shape.size() + op.entry_area.size() + op.row_shape.size() +
+                         elements.entry_shape.size() + elements.entry_area.size() + elements.row_shape.size() +
                              2 * op.entries * op.entry_bytes() + op.count * op.row_bytes());
 }
 
 void assemble_fem(Workspace& work, const LevelBuffers& level, const BodyBoundaries& boundaries, bool even,
                   OperatorBuffers& op) {
   if (op.by_entry(even)) return assemble_even(work, level, boundaries, op);
-  if (!op.measured) measure(work, level, op);
+  const LevelElements& elements = *op.elements;
+  if (!elements.measured) measure(work, level, *op.elements);
   const gpu::AssembleEdgesPush edges{.rows = op.rows(),
                                      .optical = level.optical.address(),
-                                     .tet_shape = op.tet_shape.address(),
-                                     .face_area = op.face_area.address(),
-                                     .edge_entry = op.edge_entry.address(),
-                                     .ring_offset = op.ring_offset.address(),
-                                     .ring = op.ring.address(),
+                                     .tet_shape = elements.tet_shape.address(),
+                                     .face_area = elements.face_area.address(),
+                                     .edge_entry = elements.edge_entry.address(),
+                                     .ring_offset = elements.ring_offset.address(),
+                                     .ring = elements.ring.address(),
                                      .face_kinds = level.face_kind.address(),
                                      .boundaries = boundaries.on_device,
-                                     .count = op.edge_count,
+                                     .count = elements.edge_count,
                                      .even = even ? 1u : 0u};
   // Every tet is met at its six edges, then at its four corners.
   const std::uint64_t tet_bytes = index_bytes + (even ? 0 : sizeof(gpu::Optical)) + sizeof(float);
   const std::uint64_t face_bytes = index_bytes + sizeof(float);
-  work.recorder.dispatch(work.passes.of(shader::assemble_edges, op.model, op.format), edges, op.edge_count, "assembly",
+  work.recorder.dispatch(work.passes.of(shader::assemble_edges, op.model, op.format), edges, elements.edge_count,
+                         "assembly",
                          6 * level.tet_count * (tet_bytes + sizeof(float)) + 3 * level.face_count * face_bytes +
-                             op.edge_count * (3 * index_bytes + 4 * op.entry_bytes()));
+                             elements.edge_count * (3 * index_bytes + 4 * op.entry_bytes()));
   const gpu::AssembleFemPush push{.rows = op.rows(),
                                   .optical = level.optical.address(),
-                                  .tet_shape = op.tet_shape.address(),
-                                  .face_area = op.face_area.address(),
-                                  .tet_offset = op.tet_offset.address(),
-                                  .tet_incidence = op.tet_incidence.address(),
+                                  .tet_shape = elements.tet_shape.address(),
+                                  .face_area = elements.face_area.address(),
+                                  .tet_offset = elements.tet_offset.address(),
+                                  .tet_incidence = elements.tet_incidence.address(),
                                   .face_offset = level.face_offset.address(),
                                   .face_incidence = level.face_incidence.address(),
                                   .face_kinds = level.face_kind.address(),
@@ -141,8 +145,8 @@ void assemble_polygrid(Workspace& work, const LevelBuffers& level, Method method
   const gpu::GridMaterialPush material{.vertices = level.vertices.address(),
                                        .tets = level.tets.address(),
                                        .optical = level.optical.address(),
-                                       .tet_offset = op.tet_offset.address(),
-                                       .tet_incidence = op.tet_incidence.address(),
+                                       .tet_offset = op.elements->tet_offset.address(),
+                                       .tet_incidence = op.elements->tet_incidence.address(),
                                        .vertex_optical = op.grid_optical.address(),
                                        .volume = op.grid_volume.address(),
                                        .count = op.count,

@@ -114,18 +114,19 @@ std::vector<gpu::Optical> Coefficients::at(std::uint32_t number, std::span<const
 
 const std::vector<gpu::Optical>& Coefficients::elsewhere() {
   if (elsewhere_) return *elsewhere_;
-  std::vector<gpu::Optical>& optical = elsewhere_.emplace(given_elsewhere_);
-  if (even() || (!material_ && optical.empty())) return optical;
-  const std::vector<glm::vec3> places = points_in_tets(rest_[0]);
+  std::vector<gpu::Optical> optical = given_elsewhere_;
+  if (even() || (!material_ && optical.empty())) return elsewhere_.emplace(std::move(optical));
+  const std::vector<glm::vec3> places = points_in_tets(rest_[0], [&] { device_.heed(); });
   const bool deep = wants_depth();
   if (deep && depth_elsewhere_.empty()) depth_elsewhere_ = depth_below_surface(rest_[0], places);
   optical.resize(places.size());
   for (std::size_t t = 0; t < places.size(); ++t) {
+    if (t % 256 == 0) device_.heed();  // a pattern's noise takes a microsecond or more
     const float below = deep ? depth_elsewhere_[t] : 0;
     const gpu::Optical base = material_ ? gpu::material_at(*material_, places[t], below) : optical[t];
     optical[t] = edits_.apply(base, places[t], below, spacing(0));
   }
-  return optical;
+  return elsewhere_.emplace(std::move(optical));
 }
 
 void Coefficients::check() const {

@@ -35,9 +35,7 @@ constexpr std::uint64_t gathered_face_bytes = 2 * sizeof(std::uint32_t) + sizeof
 }  // namespace
 
 GatherField::GatherField(device::Device& device, const Level& level, const BodyTree& tree) {
-  device.heed();
-  const VertexStarts starts = vertex_starts(level);
-  device.heed();
+  const VertexStarts starts = vertex_starts(level, [&] { device.heed(); });
   start_ = device::upload<std::uint32_t>(device, starts.start, "gather/a tet at each vertex");
   nearest_ = device::upload<std::uint32_t>(device, starts.nearest, "gather/nearest surface vertex");
   const auto room = [&](std::uint64_t bytes, const char* name) {

@@ -24,11 +24,12 @@ std::vector<std::uint32_t> ends_of(const std::vector<std::uint32_t>& layers) {
 
 }  // namespace
 
-OperatorBuffers::OperatorBuffers(device::Device& device, const Level& level, std::uint32_t index, Method method,
-                                 Model model_in, EntryFormat format_in)
+OperatorBuffers::OperatorBuffers(device::Device& device, const Level& level, LevelElements& elements_in,
+                                 std::uint32_t index, Method method, Model model_in, EntryFormat format_in)
     : model(model_in),
       format(format_in),
       count(carrier_count(level, method)),
+      elements(&elements_in),
       method_(method),
       prefix_("level " + std::to_string(index) + " " + std::string(name_of(method)) + " " +
               std::string(name_of(model)) + " ") {
@@ -45,7 +46,7 @@ OperatorBuffers::OperatorBuffers(device::Device& device, const Level& level, std
   const bool unpacked = device.one_by_one() && model != Model::sp3;  // UNPACKED_ENTRIES of packing.h
   stored = unpacked ? EntryFormat::plain : format;
   slice_rows = device.one_by_one() ? 1 : SLICE_ROWS;
-  const SlicedColumns columns = fem               ? slice(vertex_neighbours(level), slice_rows)
+  const SlicedColumns columns = fem               ? slice(elements->around(device, level), slice_rows)
                                 : on_grid(method) ? grid_columns(level, slice_rows)
                                                   : node_columns(level, slice_rows);
   device.heed();
@@ -77,51 +78,21 @@ OperatorBuffers::OperatorBuffers(device::Device& device, const Level& level, std
 }
 
 void OperatorBuffers::make_room(device::Device& device, const Level& level, bool even, bool two_steps) {
-  if (on_grid(method_) && grid_optical.size() == 0) upload_grid(device, level);
+  if (on_grid(method_) && grid_optical.size() == 0) {
+    elements->make_tets(device, level);
+    const std::string prefix = "assembly/" + prefix_;
+    grid_optical = {device, count * sizeof(gpu::Optical), device::Place::device, prefix + "optical at vertices"};
+    grid_volume = {device, count * sizeof(float), device::Place::device, prefix + "volume at vertices"};
+  }
   if (method_ != Method::fem) return;
   if (two_steps && other.size() == 0) {
     other = {device, count * field_bytes(), device::Place::device, "solver/" + prefix_ + "other z"};
   }
   if (by_entry(even)) {
-    if (row_shape.size() == 0) upload_shape(device, level);
+    elements->make_shapes(device, level, slice_rows);
   } else {
-    if (ring.size() == 0) upload_rings(device, level);
+    elements->make_rings(device, level, slice_rows);
   }
-}
-
-void OperatorBuffers::upload_shape(device::Device& device, const Level& level) {
-  const Neighbours rows = vertex_neighbours(level);
-  device.heed();
-  const FemShape shape = fem_shape(level, rows, slice(rows, slice_rows));
-  const std::string prefix = "assembly/" + prefix_;
-  entry_shape = upload(device, shape.entry, prefix + "entry_shape");
-  entry_area = upload(device, shape.area, prefix + "entry_area");
-  row_shape = upload(device, shape.row, prefix + "row_shape");
-}
-
-void OperatorBuffers::upload_rings(device::Device& device, const Level& level) {
-  const Neighbours rows = vertex_neighbours(level);
-  device.heed();
-  const FemRings rings = fem_rings(level, rows, slice(rows, slice_rows));
-  const std::string prefix = "assembly/" + prefix_;
-  edge_count = static_cast<std::uint32_t>(rings.edge_entry.size());
-  edge_entry = upload(device, rings.edge_entry, prefix + "edge_entry");
-  ring_offset = upload(device, rings.ring_offset, prefix + "ring_offset");
-  ring = upload(device, rings.ring, prefix + "ring");
-  tet_offset = upload(device, rings.tets.offset, prefix + "tet_offset");
-  tet_incidence = upload(device, rings.tets.tet, prefix + "tet_incidence");
-  tet_shape = {device, std::uint64_t{gpu::TET_SHAPE} * level.tet_count() * sizeof(float), device::Place::device,
-               prefix + "tet_shape"};
-  face_area = {device, level.face_count() * sizeof(float), device::Place::device, prefix + "face_area"};
-}
-
-void OperatorBuffers::upload_grid(device::Device& device, const Level& level) {
-  const TetIncidence tets = quadgraph::tet_incidence(level);
-  const std::string prefix = "assembly/" + prefix_;
-  tet_offset = upload(device, tets.offset, prefix + "tet_offset");
-  tet_incidence = upload(device, tets.tet, prefix + "tet_incidence");
-  grid_optical = {device, count * sizeof(gpu::Optical), device::Place::device, prefix + "optical at vertices"};
-  grid_volume = {device, count * sizeof(float), device::Place::device, prefix + "volume at vertices"};
 }
 
 std::uint64_t OperatorBuffers::block_bytes() const {

@@ -9,6 +9,7 @@
 #include "engine/file/graph.h"
 #include "engine/optics/boundary.h"
 #include "engine/reference/stored_entries.h"
+#include "engine/solve/level_elements.h"
 #include "shaders/solver/solve_shared.h"
 
 namespace quadgraph {
@@ -44,20 +45,9 @@ struct OperatorBuffers {
   device::Buffer surface_share;                        // SurfaceShare of each
   device::Buffer surface_before, surface_start;        // vec3 of each: exitance at the last look, and at the start
 
-  // fem only, like all that follow: what rows are assembled from where the body is at rest and its coefficients are the
-  // same everywhere.
-  device::Buffer entry_shape, entry_area, row_shape;  // AssembleEvenPush
-
-  // What rows are assembled from in all other cases.
-  std::uint32_t edge_count = 0;
-  device::Buffer edge_entry, ring_offset, ring;  // AssembleEdgesPush
-  device::Buffer tet_offset, tet_incidence;      // AssembleFemPush
-  device::Buffer tet_shape, face_area;           // ShapePush
-  // What rows of polygrids are assembled from: tet_offset and tet_incidence, and what GridMaterialPush makes of them.
-  device::Buffer grid_optical, grid_volume;
-  std::vector<std::uint32_t> layer_ends;  // rows of each layer and all above it
-  bool measured = false;                  // they belong to the present vertices
-  bool moved = false;                     // since these buffers were made
+  LevelElements* elements;                   // of its level: what its rows are assembled from
+  device::Buffer grid_optical, grid_volume;  // of polygrids: what GridMaterialPush makes of the tets
+  std::vector<std::uint32_t> layer_ends;     // rows of each layer and all above it
 
   std::optional<std::vector<Boundary>> assembled;  // for the present material, with these boundaries of bodies
   bool damped = false;                             // `damping` belongs to these rows
@@ -66,16 +56,16 @@ struct OperatorBuffers {
   bool weighed = false;                            // surface_share belongs to the present light and vertices
   bool solved = false;                             // x has been solved for, if for other light or coefficients
 
-  // Uploads the rows; values are undefined until assembled.
-  OperatorBuffers(device::Device& device, const Level& level, std::uint32_t index, Method method, Model model,
-                  EntryFormat format);
+  // Uploads the rows; values are undefined until assembled. `elements` outlive it.
+  OperatorBuffers(device::Device& device, const Level& level, LevelElements& elements, std::uint32_t index,
+                  Method method, Model model, EntryFormat format);
 
   // Makes what the assembly needs, and what smoothing in two steps does, unless it is there. `even`: the coefficients
   // are the same everywhere.
   void make_room(device::Device& device, const Level& level, bool even, bool two_steps);
 
   // Whether entry_shape makes the entries, and not the elements around each edge.
-  bool by_entry(bool even) const { return even && !moved; }
+  bool by_entry(bool even) const { return even && !elements->moved; }
 
   std::uint64_t field_bytes() const { return (model == Model::sp3 ? 2 : 1) * sizeof(glm::vec3); }
   // Whether the sum of a row and its diagonal are both found from one record in row_sum
@@ -93,10 +83,6 @@ struct OperatorBuffers {
   std::uint64_t product_bytes() const;  // read by one product with the rows, diagonal left out
 
  private:
-  void upload_shape(device::Device& device, const Level& level);
-  void upload_grid(device::Device& device, const Level& level);
-  void upload_rings(device::Device& device, const Level& level);
-
   Method method_;
   std::string prefix_;
 };

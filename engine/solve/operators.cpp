@@ -17,13 +17,17 @@ constexpr double packed_conduction = 50;
 void Operators::create(device::Device& device, std::span<const Level> levels, const OperatorKey& key, bool even,
                        bool two_steps) {
   const std::size_t count = std::min<std::size_t>(levels.size(), MAX_LEVELS);
+  while (elements_.size() < count) {
+    const auto number = static_cast<std::uint32_t>(elements_.size());
+    elements_.push_back(std::make_unique<LevelElements>(number));
+    elements_.back()->moved = moved_on_device_ || moved_.contains(number);
+  }
   if (!levels_.contains(key)) {
     std::vector<OfLevel> of_key(count);
     for (std::uint32_t i = 0; i < count; ++i) {
       const bool plain = plain_on_device_ || plain_.contains(key);
       const EntryFormat format = plain ? EntryFormat::plain : format_of(levels[i], key.method);
-      of_key[i].op.emplace(device, levels[i], i, key.method, key.model, format);
-      of_key[i].op->moved = moved_on_device_;
+      of_key[i].op.emplace(device, levels[i], *elements_[i], i, key.method, key.model, format);
       if (i + 1 < count) of_key[i].transfer.emplace(device, levels[i], levels[i + 1], i, key.method);
     }
     for (std::uint32_t i = 0; i < count; ++i) write_gates(device, of_key, i);
@@ -92,33 +96,37 @@ void Operators::rounded(const OperatorKey& key, double rounding) {
   levels_.erase(key);
 }
 
+void Operators::forget() {
+  levels_.clear();
+  elements_.clear();
+}
+
 void Operators::put_back() {
   for (const OperatorKey& key : plain_) levels_.erase(key);
   plain_.clear();
   moved_on_device_ = plain_on_device_ = false;
-  for (auto& [key, of_key] : levels_) {
-    for (OfLevel& level : of_key) {
-      level.op->measured = level.op->moved = false;
-      level.op->assembled.reset();
-    }
-  }
+  moved_.clear();
+  for (const auto& elements : elements_) elements->moved = false;
+  measure_anew();
 }
 
 void Operators::measure_anew() {
+  for (const auto& elements : elements_) elements->measured = false;
   for (auto& [key, of_key] : levels_) {
     for (OfLevel& level : of_key) {
-      level.op->measured = false;
       level.op->assembled.reset();
     }
   }
 }
 
 void Operators::moved(std::uint32_t number) {
+  moved_.insert(number);
+  if (number < elements_.size()) {
+    elements_[number]->moved = true;
+    elements_[number]->measured = false;
+  }
   for (auto& [key, of_key] : levels_) {
-    if (number >= of_key.size()) continue;
-    of_key[number].op->measured = false;
-    of_key[number].op->moved = true;
-    of_key[number].op->assembled.reset();
+    if (number < of_key.size()) of_key[number].op->assembled.reset();
   }
 }
 

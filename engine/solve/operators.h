@@ -3,6 +3,7 @@
 
 #include <compare>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <span>
@@ -52,7 +53,7 @@ class Operators {
   void rounded(const OperatorKey& key, double rounding);
 
   // What was made is made again.
-  void forget() { levels_.clear(); }
+  void forget();
   // Volumes count for something else.
   void measure_anew();
 
@@ -78,8 +79,10 @@ class Operators {
 
   static void write_gates(device::Device& device, const std::vector<OfLevel>& levels, std::uint32_t number);
 
+  std::vector<std::unique_ptr<LevelElements>> elements_;  // by level, of all operators on it
   std::map<OperatorKey, std::vector<OfLevel>> levels_;
-  std::set<OperatorKey> plain_;  // on all levels, since a motion or by their material
+  std::set<OperatorKey> plain_;    // on all levels, since a motion or by their material
+  std::set<std::uint32_t> moved_;  // levels whose vertices do not lie as in the file
   bool moved_on_device_ = false, plain_on_device_ = false;
 };
 

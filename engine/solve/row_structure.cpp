@@ -77,13 +77,24 @@ class Edges {
   std::vector<std::uint32_t> first_;  // edge of every vertex, with the end
 };
 
+// The six edges of every tet, one tet after the other.
+std::vector<std::uint32_t> edges_of_tets(const Level& level, const Edges& edges, const Listener& listener) {
+  std::vector<std::uint32_t> found;
+  found.reserve(tet_edges.size() * level.tets.size());
+  for (const glm::uvec4& tet : level.tets) {
+    heed(listener, found.size() / tet_edges.size());
+    for (const auto& [a, b] : tet_edges) found.push_back(edges.between(tet[a], tet[b]));
+  }
+  return found;
+}
+
 // What lies around every edge: tets, then open faces.
-Lists rings_of(const Level& level, const Edges& edges) {
+Lists rings_of(const Level& level, const Edges& edges, const Listener& listener) {
+  const std::vector<std::uint32_t> of_tets = edges_of_tets(level, edges, listener);
   return gather(edges.count(), [&](const auto& add) {
     for (std::uint32_t t = 0; t < level.tet_count(); ++t) {
-      for (std::uint32_t e = 0; e < tet_edges.size(); ++e) {
-        add(edges.between(level.tets[t][tet_edges[e][0]], level.tets[t][tet_edges[e][1]]), 8 * t + e);
-      }
+      heed(listener, t);
+      for (std::uint32_t e = 0; e < tet_edges.size(); ++e) add(of_tets[tet_edges.size() * t + e], 8 * t + e);
     }
     for (std::uint32_t f = 0; f < level.face_count(); ++f) {
       for (int k = 0; k < 3 && !level.reflecting(f); ++k) {
@@ -100,9 +111,12 @@ struct EdgeShape {
   double area = 0;       // the same over faces, mm^2
 };
 
-void add_tets(const Level& level, const Edges& edges, std::vector<EdgeShape>& of_edge, std::vector<glm::vec2>& of_row) {
+void add_tets(const Level& level, const Edges& edges, const Listener& listener, std::vector<EdgeShape>& of_edge,
+              std::vector<glm::vec2>& of_row) {
   std::vector<double> mass(of_row.size(), 0.0);
-  for (const glm::uvec4& tet : level.tets) {
+  for (std::uint32_t t = 0; t < level.tet_count(); ++t) {
+    heed(listener, t);
+    const glm::uvec4& tet = level.tets[t];
     const glm::dvec3 p(level.vertices[tet.x]);
     const glm::dvec3 e1 = glm::dvec3(level.vertices[tet.y]) - p, e2 = glm::dvec3(level.vertices[tet.z]) - p,
                      e3 = glm::dvec3(level.vertices[tet.w]) - p;
@@ -138,20 +152,24 @@ void add_faces(const Level& level, const Edges& edges, std::vector<EdgeShape>& o
 
 }  // namespace
 
-Neighbours vertex_neighbours(const Level& level) {
-  std::vector<std::vector<std::uint32_t>> lists(level.vertices.size());
-  for (const glm::uvec4& tet : level.tets) {
-    for (const auto& [a, b] : tet_edges) {
-      lists[tet[a]].push_back(tet[b]);
-      lists[tet[b]].push_back(tet[a]);
+Neighbours vertex_neighbours(const Level& level, const Listener& listener) {
+  Lists around = gather(level.vertices.size(), [&](const auto& add) {
+    for (std::uint32_t t = 0; t < level.tet_count(); ++t) {
+      heed(listener, t);
+      const glm::uvec4& tet = level.tets[t];
+      for (const auto& [a, b] : tet_edges) {
+        add(tet[a], tet[b]);
+        add(tet[b], tet[a]);
+      }
     }
-  }
+  });
   Neighbours rows;
   rows.offset.push_back(0);
-  for (auto& list : lists) {
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-    rows.column.insert(rows.column.end(), list.begin(), list.end());
+  for (std::size_t v = 0; v + 1 < around.offset.size(); ++v) {
+    heed(listener, v);
+    const auto begin = around.element.begin() + around.offset[v], end = around.element.begin() + around.offset[v + 1];
+    std::sort(begin, end);
+    rows.column.insert(rows.column.end(), begin, std::unique(begin, end));
     rows.offset.push_back(static_cast<std::uint32_t>(rows.column.size()));
   }
   return rows;
@@ -203,18 +221,19 @@ SlicedColumns grid_columns(const Level& level, std::uint32_t slice_rows) {
   return slice(rows, slice_rows);
 }
 
-FemShape fem_shape(const Level& level, const Neighbours& rows, const SlicedColumns& columns) {
+FemShape fem_shape(const Level& level, const Neighbours& rows, const SlicedColumns& columns, const Listener& listener) {
   const Edges edges(rows);
   std::vector<EdgeShape> of_edge(edges.count());
   FemShape shape;
   shape.row.assign(level.vertices.size(), glm::vec2(0));
-  add_tets(level, edges, of_edge, shape.row);
+  add_tets(level, edges, listener, of_edge, shape.row);
   add_faces(level, edges, of_edge, shape.row);
   shape.entry.assign(columns.column.size(), glm::vec2(0));
   const std::uint32_t surface_slices = (level.surface_vertex_count + columns.slice_rows - 1) / columns.slice_rows;
   shape.area.assign(columns.slice_offset[surface_slices], 0.0f);
   std::uint32_t edge = 0;
   edges.for_each([&](std::uint32_t a, std::uint32_t b) {
+    heed(listener, edge);
     const EdgeShape& own = of_edge[edge++];
     for (const std::uint32_t entry : {entry_of(rows, columns, a, b), entry_of(rows, columns, b, a)}) {
       shape.entry[entry] = glm::vec2(own.stiffness, own.mass);
@@ -224,13 +243,14 @@ FemShape fem_shape(const Level& level, const Neighbours& rows, const SlicedColum
   return shape;
 }
 
-FemRings fem_rings(const Level& level, const Neighbours& rows, const SlicedColumns& columns) {
+FemRings fem_rings(const Level& level, const Neighbours& rows, const SlicedColumns& columns, const Listener& listener) {
   const Edges edges(rows);
   FemRings structure;
   edges.for_each([&](std::uint32_t a, std::uint32_t b) {
+    heed(listener, structure.edge_entry.size());
     structure.edge_entry.emplace_back(entry_of(rows, columns, a, b), entry_of(rows, columns, b, a));
   });
-  Lists rings = rings_of(level, edges);
+  Lists rings = rings_of(level, edges, listener);
   structure.ring_offset = std::move(rings.offset);
   structure.ring = std::move(rings.element);
   structure.tets = tet_incidence(level);

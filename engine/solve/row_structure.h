@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/base/listener.h"
 #include "engine/base/solve_options.h"
 #include "engine/file/graph.h"
 
@@ -58,14 +59,16 @@ SlicedColumns grid_columns(const Level& level, std::uint32_t slice_rows);
 SlicedColumns node_columns(const Level& level, std::uint32_t slice_rows);
 
 // The vertices around every vertex, ascending.
-Neighbours vertex_neighbours(const Level& level);
+Neighbours vertex_neighbours(const Level& level, const Listener& listener = {});
 
 // Rows of the vertices.
 SlicedColumns slice(const Neighbours& rows, std::uint32_t slice_rows);
 
 // What elements make of the present vertices of `level`; `rows` are its vertex_neighbours.
-FemShape fem_shape(const Level& level, const Neighbours& rows, const SlicedColumns& columns);
-FemRings fem_rings(const Level& level, const Neighbours& rows, const SlicedColumns& columns);
+FemShape fem_shape(const Level& level, const Neighbours& rows, const SlicedColumns& columns,
+                   const Listener& listener = {});
+FemRings fem_rings(const Level& level, const Neighbours& rows, const SlicedColumns& columns,
+                   const Listener& listener = {});
 
 FaceIncidence face_incidence(const Level& level);
 TetIncidence tet_incidence(const Level& level);

@@ -54,7 +54,7 @@ TransportSamples::TransportSamples(device::Device& device, const Level& level) {
   unit_ = room(vec3_bytes, "scale, before");
   weights_ = room(level.tet_count() * sizeof(glm::vec2), "weights");
   total_ = room(sizeof(float), "total weight");
-  const std::vector<std::uint32_t> boundary = nearest_boundary(level);
+  const std::vector<std::uint32_t> boundary = nearest_boundary(level, [&] { device.heed(); });
   if (!boundary.empty()) boundary_ = device::upload<std::uint32_t>(device, boundary, "transport/nearest boundary");
   drawn_ = room(sizeof(std::uint32_t), "points drawn");
   load_ = room(2 * gpu::TRANSPORT_HALVES * level.vertex_count() * sum_bytes, "load");

@@ -61,9 +61,9 @@ def environment(case: Case, folder: Path, mark: str) -> dict[str, str]:
     return kept | own | dict(case.environment)
 
 
-def _threads(pid: int) -> list[str]:
+def _threads(pid: int) -> list[Path]:
     try:
-        return os.listdir(f"/proc/{pid}/task")
+        return list(Path(f"/proc/{pid}/task").iterdir())
     except OSError:  # it has ended
         return []
 
@@ -74,9 +74,9 @@ def descendants(pid: int) -> list[int]:
     while waiting:
         each = waiting.pop()
         found.append(each)
-        for task in _threads(each):
+        for thread in _threads(each):
             try:
-                waiting += map(int, Path(f"/proc/{each}/task/{task}/children").read_text().split())
+                waiting += map(int, (thread / "children").read_text().split())
             except OSError:
                 continue
     return found

@@ -8,6 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "engine/base/listener.h"
+
 namespace quadgraph {
 namespace {
 
@@ -23,7 +25,8 @@ double square(double x) {
 
 // W^2/(mm^4 sr^2) per pixel, row by row, nothing where the block has no body: square of the mean of what the compared
 // pixels of its block change by with another sample of the material.
-std::vector<double> medium_of_blocks(const PictureBuffers& picture, std::span<const gpu::PixelDoubt> doubt) {
+std::vector<double> medium_of_blocks(device::Device& device, const PictureBuffers& picture,
+                                     std::span<const gpu::PixelDoubt> doubt) {
   struct Mean {
     double change = 0, covered = 0;
   };
@@ -34,6 +37,7 @@ std::vector<double> medium_of_blocks(const PictureBuffers& picture, std::span<co
     return means[std::size_t{y / gpu::DOUBT_BLOCK} * across + x / gpu::DOUBT_BLOCK];
   };
   for (std::uint32_t y = 0; y < picture.height; y += gpu::DOUBT_STRIDE) {
+    device.heed();
     for (std::uint32_t x = 0; x < picture.width; x += gpu::DOUBT_STRIDE) {
       const gpu::PixelDoubt& here = doubt[std::size_t{y} * picture.width + x];
       mean_at(x, y).change += here.medium;
@@ -42,6 +46,7 @@ std::vector<double> medium_of_blocks(const PictureBuffers& picture, std::span<co
   }
   std::vector<double> squared(doubt.size());
   for (std::uint32_t y = 0; y < picture.height; ++y) {
+    device.heed();
     for (std::uint32_t x = 0; x < picture.width; ++x) {
       const Mean& mean = mean_at(x, y);
       const std::size_t pixel = std::size_t{y} * picture.width + x;
@@ -80,9 +85,10 @@ std::vector<Seen> seen_by(device::Device& device, const PictureBuffers& picture,
   std::vector<gpu::PixelDoubt> doubt(count);
   device::read_bytes(device, picture.layers[0], std::as_writable_bytes(std::span(scattered)));
   device::read_bytes(device, picture.doubt, std::as_writable_bytes(std::span(doubt)));
-  const std::vector<double> medium = medium_of_blocks(picture, doubt);
+  const std::vector<double> medium = medium_of_blocks(device, picture, doubt);
   std::vector<Seen> pixels;
   for (std::uint64_t i = 0; i < count; ++i) {
+    heed([&] { device.heed(); }, i);
     if (doubt[i].covered > 0) pixels.push_back(seen_in(scattered[i], doubt_of(doubt[i]), medium[i], exitance));
   }
   return pixels;
@@ -101,6 +107,7 @@ std::optional<ErrorEstimate> picture_error(device::Device& device, const Picture
   const std::size_t third = pixels.size() / 3;
   std::nth_element(pixels.begin(), pixels.begin() + static_cast<std::ptrdiff_t>(third), pixels.end(),
                    [](const Seen& a, const Seen& b) { return a.radiance < b.radiance; });
+  device.heed();
   return ErrorEstimate{.whole = relative_rms(pixels, pixels.size(), one),
                        .unlit = relative_rms(pixels, pixels.size(), [](const Seen& seen) { return seen.unlit; }),
                        .dimmest = relative_rms(pixels, third, one)};

@@ -82,6 +82,7 @@ const device::Buffer& ToneMapper::run(const PictureBuffers& picture, const ToneO
                         .blue_first = part.blue_first ? 1u : 0u,
                         .surrounded = picture.has_surroundings ? 1u : 0u};
   for (std::size_t k = 0; k < PICTURE_LAYERS; ++k) push.layers[k] = picture.layers[k].address();
+  const device::Interruptible scope(device_);
   device::Commands commands(device_);
   commands.dispatch(tone_map_, push, count);
   commands.submit_and_wait();

@@ -32,6 +32,7 @@ struct Assembled {
   Problem problem;
   OneBody refractions;
   LevelBuffers buffers;
+  LevelElements elements{0};
   OperatorBuffers op;
   Workspace work;
 
@@ -42,7 +43,7 @@ struct Assembled {
         problem{method, Source::diffuse, model, optical, veined().eta},
         refractions(device.context, veined().eta),
         buffers(upload_level(device.context, level, 0, refractions)),
-        op(device.context, level, 0, method, model, format_of(level, method)),
+        op(device.context, level, elements, 0, method, model, format_of(level, method)),
         work(device.context, level.node_count()) {
     upload_graph(device.context, level, 0, buffers);
     buffers.optical = device::upload<gpu::Optical>(device.context, optical, "optical");
