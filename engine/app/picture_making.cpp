@@ -137,6 +137,7 @@ void Viewer::make_picture(bool gather) {
 void Viewer::show(const device::Buffer& pixels) {
   pixels_ = &pixels;
   if (&engine().device() == &presenter_) return;
+  swapchain_.wait();  // frames that were presented while the pixels were made read the buffer
   const auto bytes = pixels.mapped_as<std::byte>();
   if (presented_.size() < bytes.size()) {
     presented_ = device::Buffer(presenter_, bytes.size(), device::Place::host, "picture/presented");

@@ -113,8 +113,8 @@ def opening(tmp_path: Path) -> Iterator[Hand]:
     """A window on a display of its own, just opened on a body of which nothing is known yet, with a picture that has
     all that takes long.
     """
-    body = write_levels(tmp_path / "ball.qgraph", [icosphere(5, 10), icosphere(4, 10), icosphere(3, 10)])
-    options = ("--material", "marble-veins", "--sweep-points", "60000", "--radiance", "gathered", "--samples", "16")
+    body = write_levels(tmp_path / "ball.qgraph", [icosphere(4, 10), icosphere(3, 10)])
+    options = ("--material", "marble-veins", "--sweep-points", "50000", "--radiance", "gathered", "--samples", "8")
     with display(tmp_path) as own:
         opened = Hand(own, tmp_path, *options, "--ground", body=body)
         try:
