@@ -77,10 +77,12 @@ void Viewer::open_file(const std::filesystem::path& file) {
       put_environment(state_.scene, file.string(), engine().bounds());
       state_.say("");
     } else if (suffix == ".qgraph") {
+      stage_.take_up(load_meanwhile(file));
       show_opened(with_body(file, state_.scene), std::nullopt);
       window_.set_name(file.filename().string());
     } else if (suffix == ".json") {
       const SceneFile scenes = SceneFile::load(file);
+      stage_.take_up(load_meanwhile(scenes.at(0).body));
       show_opened(scenes.at(0), scenes.frames() > 1 ? std::optional(scenes) : std::nullopt);
       window_.set_name(file.filename().string());
     } else {
@@ -117,7 +119,6 @@ void Viewer::show_opened(const Scene& scene, const std::optional<SceneFile>& fra
     making_.reset();
   };
   try {
-    stage_.take_up(load_meanwhile(scene.body));
     show(scene);
   } catch (const DeviceError&) {
     throw;
