@@ -15,12 +15,12 @@ Stage::Loaded Stage::load(const std::filesystem::path& path) {
 
 void Stage::show(const Scene& scene) {
   const auto turn = in_use_.take();
+  Loaded loaded = std::exchange(loaded_, {});
   const bool fresh = !engine_ || scene.body != scene_.body;
   if (fresh) {
     engine_.reset();  // two bodies need not fit beside each other
-    if (loaded_.path != scene.body) loaded_ = load(scene.body);
-    engine_ = std::make_unique<Engine>(std::exchange(loaded_, {}).body, scene.body,
-                                       device_ ? device_ : open_device(options_));
+    if (loaded.path != scene.body) loaded = load(scene.body);
+    engine_ = std::make_unique<Engine>(std::move(loaded.body), scene.body, device_ ? device_ : open_device(options_));
     scene_ = {};
     scene_.body = scene.body;
   }

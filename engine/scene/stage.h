@@ -16,7 +16,7 @@ class Stage {
   explicit Stage(const device::DeviceOptions& options = {}) : options_(options) {}
   explicit Stage(std::shared_ptr<device::Device> device) : device_(std::move(device)) {}
 
-  // A body that has been loaded: a scene of this file is shown with it.
+  // A body that has been loaded: the next scene is shown with it where it is of this file.
   struct Loaded {
     std::filesystem::path path;
     std::shared_ptr<const QuadGraph> body;

@@ -101,8 +101,8 @@ void assemble_even(Workspace& work, const LevelBuffers& level, const BodyBoundar
 void assemble_fem(Workspace& work, const LevelBuffers& level, const BodyBoundaries& boundaries, bool even,
                   OperatorBuffers& op) {
   if (op.by_entry(even)) return assemble_even(work, level, boundaries, op);
-  const LevelElements& elements = *op.elements;
-  if (!elements.measured) measure(work, level, *op.elements);
+  LevelElements& elements = *op.elements;
+  if (!elements.measured) measure(work, level, elements);
   const gpu::AssembleEdgesPush edges{.rows = op.rows(),
                                      .optical = level.optical.address(),
                                      .tet_shape = elements.tet_shape.address(),

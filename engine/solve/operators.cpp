@@ -17,17 +17,12 @@ constexpr double packed_conduction = 50;
 void Operators::create(device::Device& device, std::span<const Level> levels, const OperatorKey& key, bool even,
                        bool two_steps) {
   const std::size_t count = std::min<std::size_t>(levels.size(), MAX_LEVELS);
-  while (elements_.size() < count) {
-    const auto number = static_cast<std::uint32_t>(elements_.size());
-    elements_.push_back(std::make_unique<LevelElements>(number));
-    elements_.back()->moved = moved_on_device_ || moved_.contains(number);
-  }
   if (!levels_.contains(key)) {
     std::vector<OfLevel> of_key(count);
     for (std::uint32_t i = 0; i < count; ++i) {
       const bool plain = plain_on_device_ || plain_.contains(key);
       const EntryFormat format = plain ? EntryFormat::plain : format_of(levels[i], key.method);
-      of_key[i].op.emplace(device, levels[i], *elements_[i], i, key.method, key.model, format);
+      of_key[i].op.emplace(device, levels[i], elements(i), i, key.method, key.model, format);
       if (i + 1 < count) of_key[i].transfer.emplace(device, levels[i], levels[i + 1], i, key.method);
     }
     for (std::uint32_t i = 0; i < count; ++i) write_gates(device, of_key, i);
@@ -37,6 +32,13 @@ void Operators::create(device::Device& device, std::span<const Level> levels, co
     device.heed();  // making room is host work
     at(key, i).make_room(device, levels[i], even, two_steps || i + 1 == count);
   }
+}
+
+LevelElements& Operators::elements(std::uint32_t number) {
+  for (auto next = static_cast<std::uint32_t>(elements_.size()); next <= number; ++next) {
+    elements_.push_back(std::make_unique<LevelElements>(next));
+  }
+  return *elements_[number];
 }
 
 // What opens the gates of the level's state.
@@ -79,7 +81,6 @@ void Operators::remeasure(std::uint32_t number, const Level& level) {
 
 void Operators::remeasure(std::uint32_t number, double conduction) {
   const bool plain = conduction > packed_conduction;
-  moved_on_device_ = true;
   plain_on_device_ = plain_on_device_ || plain;
   std::erase_if(levels_, [&](const auto& of_key) {
     const auto& [key, levels] = of_key;
@@ -98,14 +99,17 @@ void Operators::rounded(const OperatorKey& key, double rounding) {
 
 void Operators::forget() {
   levels_.clear();
-  elements_.clear();
+  for (std::uint32_t i = 0; i < elements_.size(); ++i) {
+    const bool moved = elements_[i]->moved;
+    elements_[i] = std::make_unique<LevelElements>(i);
+    elements_[i]->moved = moved;
+  }
 }
 
 void Operators::put_back() {
   for (const OperatorKey& key : plain_) levels_.erase(key);
   plain_.clear();
-  moved_on_device_ = plain_on_device_ = false;
-  moved_.clear();
+  plain_on_device_ = false;
   for (const auto& elements : elements_) elements->moved = false;
   measure_anew();
 }
@@ -120,11 +124,8 @@ void Operators::measure_anew() {
 }
 
 void Operators::moved(std::uint32_t number) {
-  moved_.insert(number);
-  if (number < elements_.size()) {
-    elements_[number]->moved = true;
-    elements_[number]->measured = false;
-  }
+  elements(number).moved = true;
+  elements(number).measured = false;
   for (auto& [key, of_key] : levels_) {
     if (number < of_key.size()) of_key[number].op->assembled.reset();
   }

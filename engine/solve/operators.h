@@ -75,15 +75,15 @@ class Operators {
     std::optional<TransferBuffers> transfer;
   };
 
+  LevelElements& elements(std::uint32_t number);
   void moved(std::uint32_t number);
 
   static void write_gates(device::Device& device, const std::vector<OfLevel>& levels, std::uint32_t number);
 
   std::vector<std::unique_ptr<LevelElements>> elements_;  // by level, of all operators on it
   std::map<OperatorKey, std::vector<OfLevel>> levels_;
-  std::set<OperatorKey> plain_;    // on all levels, since a motion or by their material
-  std::set<std::uint32_t> moved_;  // levels whose vertices do not lie as in the file
-  bool moved_on_device_ = false, plain_on_device_ = false;
+  std::set<OperatorKey> plain_;  // on all levels, since a motion or by their material
+  bool plain_on_device_ = false;
 };
 
 }  // namespace quadgraph

@@ -253,13 +253,13 @@ FemRings fem_rings(const Level& level, const Neighbours& rows, const SlicedColum
   Lists rings = rings_of(level, edges, listener);
   structure.ring_offset = std::move(rings.offset);
   structure.ring = std::move(rings.element);
-  structure.tets = tet_incidence(level);
   return structure;
 }
 
-TetIncidence tet_incidence(const Level& level) {
+TetIncidence tet_incidence(const Level& level, const Listener& listener) {
   Lists tets = gather(level.vertices.size(), [&](const auto& add) {
     for (std::uint32_t t = 0; t < level.tet_count(); ++t) {
+      heed(listener, t);
       for (int k = 0; k < 4; ++k) add(level.tets[t][k], t);
     }
   });

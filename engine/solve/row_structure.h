@@ -39,11 +39,10 @@ struct TetIncidence {
   std::vector<std::uint32_t> tet;
 };
 
-// Which elements make the entries of fem rows (AssembleEdgesPush, AssembleFemPush).
+// Which elements make the entries of fem rows (AssembleEdgesPush).
 struct FemRings {
   std::vector<glm::uvec2> edge_entry;  // the two entries of every edge
   std::vector<std::uint32_t> ring_offset, ring;
-  TetIncidence tets;
 };
 
 // The open outside faces at every surface vertex.
@@ -71,6 +70,6 @@ FemRings fem_rings(const Level& level, const Neighbours& rows, const SlicedColum
                    const Listener& listener = {});
 
 FaceIncidence face_incidence(const Level& level);
-TetIncidence tet_incidence(const Level& level);
+TetIncidence tet_incidence(const Level& level, const Listener& listener = {});
 
 }  // namespace quadgraph

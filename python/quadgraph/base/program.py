@@ -53,14 +53,14 @@ class _Signals(MetaPathFinder):
     """
 
     def __init__(self) -> None:
-        self.sent: list[int] = []  # those that were heeded in this run
+        self.first: int | None = None  # that was heeded in this run
         self._raised = -math.inf
 
     def stop(self, number: int, frame: FrameType | None) -> None:
         """Heed a signal, later where something is being imported."""
         if time.monotonic() < self._raised + _SETTLING:
             return
-        self.sent.append(number)
+        self.first = self.first or number
         if _importing(frame):
             signal.signal(signal.SIGALRM, self._again)
             signal.setitimer(signal.ITIMER_REAL, _AGAIN)
@@ -72,18 +72,19 @@ class _Signals(MetaPathFinder):
     def find_spec(self, *_: object) -> None:
         """Find nothing: this is called before a module is looked for."""
         ours = all(file.startswith(_OURS) for file in _importing(sys._getframe(1)))
-        if ours and threading.current_thread() is threading.main_thread():
-            self._raise(self.sent[0])
+        if ours and self.first and threading.current_thread() is threading.main_thread():
+            self._raise(self.first)
 
     def forget(self) -> None:
         """Wait no longer for an import."""
-        if self.sent:  # else the timer may be somebody else's
+        if self.first:  # else the timer may be somebody else's
             signal.setitimer(signal.ITIMER_REAL, 0)
         if self in sys.meta_path:
             sys.meta_path.remove(self)
 
     def _again(self, _number: int, frame: FrameType | None) -> None:
-        self.stop(self.sent[0], frame)
+        if self.first:
+            self.stop(self.first, frame)
 
     def _raise(self, number: int) -> NoReturn:
         self._raised = time.monotonic()
@@ -110,7 +111,7 @@ def ended(run: Callable[[], int]) -> int:
 
     Errors of ours and of the system are said in one line on standard error; all others are raised.
     """
-    _SIGNALS.sent.clear()
+    _SIGNALS.first = None
     heed_signals()
     _print_any_character()
     try:
@@ -131,7 +132,7 @@ def _print_any_character() -> None:
 
 def _interrupted() -> int:
     print("quadgraph: interrupted", file=sys.stderr)
-    return 128 + _SIGNALS.sent[0] if _SIGNALS.sent else INTERRUPTED
+    return 128 + _SIGNALS.first if _SIGNALS.first else INTERRUPTED
 
 
 def _failed(error: Exception) -> int:

@@ -102,3 +102,14 @@ TEST_CASE("the nearest boundary is the surface or one that two bodies share") {
   CHECK(shared == 8);
   CHECK(nearest_boundary(QuadGraph::load(test_data("two_cubes.qgraph")).levels()[0]).empty());
 }
+
+TEST_CASE("what a body's rays begin at is looked for in pieces, and given up between two") {
+  const OwnedLevel owned = box_level(16, 16.0f);
+  const Level level = owned.view();
+  std::uint32_t calls = 0;
+  const VertexStarts heard = vertex_starts(level, [&] { ++calls; });
+  CHECK(calls >= level.tet_count() / 4096);
+  CHECK(heard.start == vertex_starts(level).start);
+  struct Enough {};
+  CHECK_THROWS_AS(vertex_starts(level, [&] { throw Enough(); }), Enough);
+}

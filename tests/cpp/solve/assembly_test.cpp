@@ -280,12 +280,13 @@ bool has(const Corners& corners, std::uint32_t v) {
 
 struct FemStructure : FemRings {
   SlicedColumns columns;
+  TetIncidence tets;
 };
 
 FemStructure fem_structure(const Level& level) {
   const Neighbours rows = vertex_neighbours(level);
   const SlicedColumns columns = slice(rows, SLICE_ROWS);
-  return {fem_rings(level, rows, columns), columns};
+  return {fem_rings(level, rows, columns), columns, tet_incidence(level)};
 }
 
 OwnedLevel with_a_wall(std::uint32_t wall) {
@@ -353,4 +354,23 @@ TEST_CASE("around every edge lie its tets, then its open faces, and at every ver
   for (std::uint32_t v = 0; v < level.surface_vertex_count; ++v) {
     for (std::uint32_t k = faces.offset[v]; k < faces.offset[v + 1]; ++k) CHECK(has(level.faces[faces.face[k]], v));
   }
+}
+
+TEST_CASE("what the rows of a level are made of is found in pieces, and given up between two") {
+  const OwnedLevel owned = box_level(16, 16.0f);
+  const Level level = owned.view();
+  const Neighbours rows = vertex_neighbours(level);
+  const SlicedColumns columns = slice(rows, SLICE_ROWS);
+  struct Enough {};
+  std::uint32_t calls = 0;
+  const auto in_pieces = [&](const auto& make) {
+    calls = 0;
+    make([&] { ++calls; });
+    CHECK(calls >= level.tet_count() / 4096);
+    CHECK_THROWS_AS(make([] { throw Enough(); }), Enough);
+  };
+  in_pieces([&](const Listener& listener) { CHECK(vertex_neighbours(level, listener).column == rows.column); });
+  in_pieces([&](const Listener& listener) { fem_shape(level, rows, columns, listener); });
+  in_pieces([&](const Listener& listener) { fem_rings(level, rows, columns, listener); });
+  in_pieces([&](const Listener& listener) { tet_incidence(level, listener); });
 }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import signal
 import time
@@ -27,18 +28,24 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("hearing")
 
 
-@pytest.fixture(scope="module")
-def hand(server: Server, folder: Path) -> Iterator[Hand]:
-    """A window for all tests, whose solves at rest take seconds: with many points, in few draws."""
-    body = write_levels(folder / "ball.qgraph", [icosphere(4, 10), icosphere(3, 10)])
-    options = ("--material", "skin1", "--sweep-points", "150000", "--sweeps", "2")
-    opened = Hand(server, folder, *options, *LOOK, body=body)
+@contextlib.contextmanager
+def ended(opened: Hand) -> Iterator[Hand]:
+    """A window that ends with the tests, well where they did."""
     try:
         yield opened
         opened.close()
     finally:
         opened.process.kill()
         opened.process.communicate()
+
+
+@pytest.fixture(scope="module")
+def hand(server: Server, folder: Path) -> Iterator[Hand]:
+    """A window for all tests, whose solves at rest take seconds: with many points, in few draws."""
+    body = write_levels(folder / "ball.qgraph", [icosphere(4, 10), icosphere(3, 10)])
+    options = ("--material", "skin1", "--sweep-points", "150000", "--sweeps", "2")
+    with ended(Hand(server, folder, *options, *LOOK, body=body)) as opened:
+        yield opened
 
 
 @pytest.fixture(scope="module")
@@ -115,14 +122,8 @@ def opening(tmp_path: Path) -> Iterator[Hand]:
     """
     body = write_levels(tmp_path / "ball.qgraph", [icosphere(4, 10), icosphere(3, 10)])
     options = ("--material", "marble-veins", "--sweep-points", "50000", "--radiance", "gathered", "--samples", "8")
-    with display(tmp_path) as own:
-        opened = Hand(own, tmp_path, *options, "--ground", body=body)
-        try:
-            yield opened
-            opened.close()
-        finally:
-            opened.process.kill()
-            opened.process.communicate()
+    with display(tmp_path) as own, ended(Hand(own, tmp_path, *options, "--ground", body=body)) as opened:
+        yield opened
 
 
 def test_it_answers_from_the_first_moment_to_the_last(opening: Hand, tmp_path: Path):

@@ -14,6 +14,7 @@ import pytest
 import trimesh
 
 from coloured_files import coloured_glb
+from quadgraph.baking.surface_changes import brightness
 from quadgraph.mesh.looks.parts import ColouredMesh, Part
 from quadgraph.mesh.looks.read_looks import read_looks
 from quadgraph.mesh.surface import Surface
@@ -112,8 +113,8 @@ def test_the_skull_sends_back_its_colour(tmp_path):
     """
     read = part(tmp_path, SKULL)
     assert read.look.medium
-    s = np.sqrt(np.array(read.look.medium.sigma_a) / attenuation(read))
-    assert (1 - s) * (1 - 0.139 * s) / (1 + 1.17 * s) == pytest.approx(MULTISCATTER, abs=2e-3)
+    back = brightness(np.array(read.look.medium.sigma_s_prime), np.array(read.look.medium.sigma_a))
+    assert back == pytest.approx(MULTISCATTER, abs=2e-3)
     assert (read.look.eta, read.look.roughness) == (1.38, pytest.approx(0.53**2))
 
 
