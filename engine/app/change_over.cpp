@@ -25,11 +25,10 @@ void Viewer::follow_preview() {
 // What is on the screen stays there until the first picture of the body is made, or for good if there is none.
 void Viewer::change_over(const std::filesystem::path& body) {
   const Preview preview = *preview_;
-  Stage::Loaded loaded = load_meanwhile(body);
+  prepare(body);
   const Scene before = state_.scene;
   state_.scene = preview.after(before, body);
   try {
-    stage_.take_up(std::move(loaded));
     remake(false);
   } catch (...) {
     state_.scene = before;

@@ -77,12 +77,12 @@ void Viewer::open_file(const std::filesystem::path& file) {
       put_environment(state_.scene, file.string(), engine().bounds());
       state_.say("");
     } else if (suffix == ".qgraph") {
-      stage_.take_up(load_meanwhile(file));
+      prepare(file);
       show_opened(with_body(file, state_.scene), std::nullopt);
       window_.set_name(file.filename().string());
     } else if (suffix == ".json") {
       const SceneFile scenes = SceneFile::load(file);
-      stage_.take_up(load_meanwhile(scenes.at(0).body));
+      prepare(scenes.at(0).body);
       show_opened(scenes.at(0), scenes.frames() > 1 ? std::optional(scenes) : std::nullopt);
       window_.set_name(file.filename().string());
     } else {
@@ -99,11 +99,16 @@ void Viewer::open_file(const std::filesystem::path& file) {
   frames_wanted_ = 3;
 }
 
-// Beside what is shown and goes on being heard. Throws Interrupted where the window closes meanwhile.
-Stage::Loaded Viewer::load_meanwhile(const std::filesystem::path& body) {
+// Loads a body, and makes its engine, beside what is shown and goes on being heard. Throws Interrupted where the window
+// closes meanwhile.
+void Viewer::prepare(const std::filesystem::path& body) {
   std::future<Stage::Loaded> loaded = std::async(std::launch::async, [&] { return Stage::load(body); });
   while (loaded.wait_for(hearing_pause) != std::future_status::ready) hear(false);
-  return loaded.get();
+  stage_.take_up(loaded.get());
+  forget_convergence();
+  rest_.reset();  // the device has room for two bodies, not for three
+  const device::Interruptible scope(engine().device());
+  stage_.prepare();
 }
 
 // In the place of what is shown, which comes back where it cannot be shown.

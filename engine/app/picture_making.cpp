@@ -138,11 +138,10 @@ void Viewer::show(const device::Buffer& pixels) {
   pixels_ = &pixels;
   if (&engine().device() == &presenter_) return;
   swapchain_.wait();  // frames that were presented while the pixels were made read the buffer
-  const auto bytes = pixels.mapped_as<std::byte>();
-  if (presented_.size() < bytes.size()) {
-    presented_ = device::Buffer(presenter_, bytes.size(), device::Place::host, "picture/presented");
+  if (presented_.size() < pixels.size()) {
+    presented_ = device::Buffer(presenter_, pixels.size(), device::Place::host, "picture/presented");
   }
-  std::copy(bytes.begin(), bytes.end(), presented_.mapped_as<std::byte>().begin());
+  device::read_bytes(engine().device(), pixels, presented_.mapped_as<std::byte>().first(pixels.size()));
   pixels_ = &presented_;
 }
 

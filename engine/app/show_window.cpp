@@ -33,6 +33,17 @@ std::shared_ptr<vk::Context> presenter_of(const Window& window, device::DeviceOp
   return needed([&] { return std::make_shared<vk::Context>(options); });
 }
 
+// What makes the pictures. A driver on the processor takes seconds for a pass, and has one queue for each device:
+// frames that are shown meanwhile go another way.
+std::shared_ptr<device::Device> device_beside(const std::shared_ptr<vk::Context>& presenter,
+                                              const device::DeviceOptions& options) {
+  const std::string wanted = wanted_device(options);
+  const bool on_processor = wanted.empty() ? presenter->info().cpu : wanted == device::processor;
+  if (on_processor) return open_device({.device = device::processor});
+  if (presenter->info().cpu) return open_device(options);
+  return presenter;
+}
+
 }  // namespace
 
 int show_window(const AppOptions& options) {
@@ -40,9 +51,8 @@ int show_window(const AppOptions& options) {
   const std::filesystem::path name = options.scene.body.filename();
   Window window(name.string(), 1280, 800);
   const auto presenter = presenter_of(window, options.device);
-  const std::string wanted = wanted_device(options.device);
-  const bool on_processor = wanted.empty() ? presenter->info().cpu : wanted == device::processor;
-  Stage stage(on_processor ? open_device({.device = device::processor}) : presenter);
+  const auto device = device_beside(presenter, options.device);
+  Stage stage(device);
   std::optional<Preview> preview;
   if (!options.preview.empty()) preview.emplace(options.preview, options.scene);
   stage.show(preview ? Preview::before(options.scene) : options.scene);
@@ -51,6 +61,7 @@ int show_window(const AppOptions& options) {
     Viewer(window, *presenter, stage, {stem, options.copy_body, options.file}, preview).run();
   }
   refuse_messages(*presenter);
+  refuse_messages(*device);
   return EXIT_SUCCESS;
 }
 

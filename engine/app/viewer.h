@@ -115,7 +115,7 @@ class Viewer {
   bool replaces_work() const;
   bool opens() const { return !state_.opening.empty() && !state_.asks; }
   void open_file(const std::filesystem::path& file);
-  Stage::Loaded load_meanwhile(const std::filesystem::path& body);
+  void prepare(const std::filesystem::path& body);
   void show_opened(const Scene& scene, const std::optional<SceneFile>& frames);
   Scene wanted_scene() const;
   void turn();

@@ -99,7 +99,7 @@ class Recording : public device::Recording {
  private:
   // Parts that a dispatch is shared out in, for each thread: what one part takes longer, others make up for, and
   // between two the device's check is heeded, within a tenth of a second in walks of a draw of points.
-  static constexpr std::uint32_t parts_of_thread = 256;
+  static constexpr std::uint32_t parts_of_thread = 1024;
 
   // Bytes of a copy that a thread takes at once.
   static constexpr std::uint64_t copied_at_once = 1 << 20;

@@ -38,6 +38,10 @@ void Device::drop_transfers() noexcept {
 
 void Device::heed() {
   if (!interruptible_ || given_up_ || !check_) return;
+  if (postponed_) {
+    given_up_ = true;
+    std::rethrow_exception(std::exchange(postponed_, nullptr));
+  }
   const auto now = std::chrono::steady_clock::now();
   if (now - checked_ < pause_) return;
   checked_ = now;
@@ -46,8 +50,24 @@ void Device::heed() {
   given_up_ = false;
 }
 
+void Device::heed_until(const std::function<bool()>& ended) {
+  std::exception_ptr thrown;
+  while (!ended()) {
+    try {
+      heed();
+    } catch (...) {
+      thrown = std::current_exception();
+      given_up_ = false;  // so that the check goes on being called
+    }
+  }
+  if (thrown) postponed_ = thrown;
+}
+
 Interruptible::Interruptible(Device& device) : device_(device), outer_(device.interruptible_) {
-  if (!outer_) device_.given_up_ = false;
+  if (!outer_) {
+    device_.given_up_ = false;
+    device_.postponed_ = nullptr;
+  }
   device_.interruptible_ = true;
 }
 

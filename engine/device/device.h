@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <map>
 #include <memory>
@@ -179,6 +180,10 @@ class Device {
   // Calls DeviceOptions::check where it is due. For recordings, between pieces of work.
   void heed();
 
+  // The same until `ended` says so, which waits a moment for a piece of work that cannot be given up. What the check
+  // throws meanwhile the next call of heed() throws.
+  void heed_until(const std::function<bool()>& ended);
+
   // As DeviceOptions.
   void set_check(std::function<void()> check, std::chrono::milliseconds pause);
 
@@ -200,6 +205,7 @@ class Device {
 
  private:
   friend class Interruptible;
+  friend class Uninterrupted;
 
   void drop_staging() noexcept;
 
@@ -210,10 +216,26 @@ class Device {
   std::chrono::milliseconds pause_{0};
   std::chrono::steady_clock::time_point checked_;  // last
   bool interruptible_ = false, given_up_ = false;
+  std::exception_ptr postponed_;  // what the check has thrown amid what cannot be given up
   std::uint64_t allocated_bytes_ = 0;
   std::uint64_t peak_allocated_bytes_ = 0;
   std::uint64_t allocation_count_ = 0;
   std::map<std::string, std::uint64_t> allocated_by_purpose_;
+};
+
+// While it lives, the device's check is not called: what is tidied up is not given up.
+class Uninterrupted {
+ public:
+  explicit Uninterrupted(Device& device) : device_(device), outer_(device.interruptible_) {
+    device_.interruptible_ = false;
+  }
+  ~Uninterrupted() { device_.interruptible_ = outer_; }
+  Uninterrupted(const Uninterrupted&) = delete;
+  Uninterrupted& operator=(const Uninterrupted&) = delete;
+
+ private:
+  Device& device_;
+  bool outer_;
 };
 
 // While it lives, the device's work may be given up half-way. Then no buffer that was being written may be relied upon.

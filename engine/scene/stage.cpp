@@ -13,14 +13,29 @@ Stage::Loaded Stage::load(const std::filesystem::path& path) {
   return {path, std::make_shared<const QuadGraph>(QuadGraph::load(path))};
 }
 
+std::unique_ptr<Engine> Stage::engine_of(Loaded body) const {
+  return std::make_unique<Engine>(std::move(body.body), body.path, device_ ? device_ : open_device(options_));
+}
+
+void Stage::prepare() {
+  try {
+    prepared_ = engine_of(loaded_);
+  } catch (const DeviceError&) {
+  }
+}
+
 void Stage::show(const Scene& scene) {
   const auto turn = in_use_.take();
   Loaded loaded = std::exchange(loaded_, {});
+  std::unique_ptr<Engine> prepared = std::move(prepared_);
   const bool fresh = !engine_ || scene.body != scene_.body;
   if (fresh) {
     engine_.reset();  // two bodies need not fit beside each other
-    if (loaded.path != scene.body) loaded = load(scene.body);
-    engine_ = std::make_unique<Engine>(std::move(loaded.body), scene.body, device_ ? device_ : open_device(options_));
+    if (loaded.path != scene.body) {
+      prepared.reset();
+      loaded = load(scene.body);
+    }
+    engine_ = prepared ? std::move(prepared) : engine_of(std::move(loaded));
     scene_ = {};
     scene_.body = scene.body;
   }

@@ -26,6 +26,11 @@ class Stage {
   static Loaded load(const std::filesystem::path& path);
   void take_up(Loaded body) { loaded_ = std::move(body); }
 
+  // Makes the engine of what was taken up beside the one that is shown, which may be asked meanwhile, for the next
+  // scene to take its place. Where the device has no room for both, that scene makes it. Throws FormatError,
+  // InputError.
+  void prepare();
+
   // The body that is shown. Throws InputError before a scene was.
   Loaded loaded() { return {scene_.body, engine().shared_graph()}; }
 
@@ -52,11 +57,13 @@ class Stage {
   const std::shared_ptr<device::Device>& shared_device() const { return device_; }
 
  private:
+  std::unique_ptr<Engine> engine_of(Loaded body) const;
+
   InUse in_use_{"stage"};
   device::DeviceOptions options_;
   std::shared_ptr<device::Device> device_;  // null: by the options
   Loaded loaded_;                           // for the next scene
-  std::unique_ptr<Engine> engine_;
+  std::unique_ptr<Engine> engine_, prepared_;
   Scene scene_;
   std::string map_report_;
 };

@@ -10,6 +10,7 @@ namespace quadgraph::vk {
 namespace {
 
 constexpr VkPipelineStageFlags2 all_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+constexpr std::uint64_t slice_ns = 5'000'000;  // of waiting for software
 constexpr VkAccessFlags2 all_access = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
 
 VkRenderingAttachmentInfo attachment(const ImageMemory& image, VkImageLayout layout, const VkClearValue& clear) {
@@ -273,6 +274,14 @@ void Recording::ask_for(VkFence fence) const {
   }
 }
 
+// Whether what the fence stands for has ended, after waiting for it at most so many nanoseconds.
+bool Recording::ended(VkFence fence, std::uint64_t patience_ns) const {
+  const VkResult result = vkWaitForFences(context_.device(), 1, &fence, VK_TRUE, patience_ns);
+  if (result == VK_TIMEOUT) return false;
+  check(result, "vkWaitForFences");
+  return true;
+}
+
 // Updates that wait come first.
 void Recording::end_and_run(const std::function<void()>& meanwhile) {
   show_to(VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
@@ -290,11 +299,14 @@ void Recording::end_and_run(const std::function<void()>& meanwhile) {
   std::exception_ptr thrown;
   try {
     if (meanwhile) meanwhile();
+    if (!host_timed_) ask_for(fence);
+    // Software takes seconds for a pass, and compiles it before. A GPU, which also presents, is not looked at
+    // meanwhile.
+    context_.heed_until([&] { return ended(fence, host_timed_ ? slice_ns : UINT64_MAX); });
   } catch (...) {
     thrown = std::current_exception();
+    ended(fence, UINT64_MAX);
   }
-  if (!host_timed_) ask_for(fence);
-  check(vkWaitForFences(context_.device(), 1, &fence, VK_TRUE, UINT64_MAX), "vkWaitForFences");
   check(vkResetFences(context_.device(), 1, &fence), "vkResetFences");
   if (thrown) std::rethrow_exception(thrown);
   context_.heed();

@@ -65,6 +65,7 @@ class Recording : public device::Recording {
   void stamp();
   void end_and_run(const std::function<void()>& meanwhile);
   void ask_for(VkFence fence) const;
+  bool ended(VkFence fence, std::uint64_t patience_ns) const;
   void flush();
   std::vector<device::PassTime> read_times();
 

@@ -101,6 +101,7 @@ Context::~Context() {
 void Context::finish_updates() noexcept {
   const std::unique_ptr<device::Recording> last = take_updates();
   if (!last) return;
+  const device::Uninterrupted scope(*this);
   try {
     last->submit_and_wait(nullptr);
   } catch (const DeviceError&) {  // a device that is lost; what comes next says so
@@ -175,7 +176,9 @@ void Context::create_messenger() {
 
 VkBool32 Context::on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
                              const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
-  static_cast<Context*>(user)->messages_.emplace_back(data->pMessage);
+  auto& self = *static_cast<Context*>(user);
+  const std::lock_guard lock(self.messages_lock_);  // of pipelines, which threads of their own make
+  self.messages_.emplace_back(data->pMessage);
   return VK_FALSE;
 }
 

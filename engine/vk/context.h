@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -71,6 +72,7 @@ class Context : public device::Device {
                                                    const VkDebugUtilsMessengerCallbackDataEXT* data, void* user);
 
   std::vector<std::unique_ptr<RecordingParts>> idle_;
+  std::mutex messages_lock_;
   VkInstance instance_ = VK_NULL_HANDLE;
   VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
   VkSurfaceKHR surface_ = VK_NULL_HANDLE;

@@ -1,6 +1,8 @@
 #include "engine/vk/pipeline.h"
 
 #include <algorithm>
+#include <chrono>
+#include <future>
 #include <vector>
 
 #include "engine/base/error.h"
@@ -129,10 +131,9 @@ Pipeline::Pipeline(Context& context, const device::Shader& shader, const device:
   info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
   info.stage = stage(VK_SHADER_STAGE_COMPUTE_BIT, module, constants.info);
   info.layout = layout.get();
-  VkPipeline made = VK_NULL_HANDLE;
-  check(vkCreateComputePipelines(context.device(), VK_NULL_HANDLE, 1, &info, nullptr, &made),
-        "vkCreateComputePipelines '" + name + "'");
-  take(context, made, name);
+  make(context, name, "vkCreateComputePipelines", [&](VkPipeline* made) {
+    return vkCreateComputePipelines(context.device(), VK_NULL_HANDLE, 1, &info, nullptr, made);
+  });
 }
 
 Pipeline::Pipeline(Context& context, const device::GraphicsOptions& options, const std::string& name)
@@ -163,13 +164,18 @@ Pipeline::Pipeline(Context& context, const device::GraphicsOptions& options, con
   info.pColorBlendState = &state.blend;
   info.pDynamicState = &state.dynamic;
   info.layout = layout.get();
-  VkPipeline made = VK_NULL_HANDLE;
-  check(vkCreateGraphicsPipelines(context.device(), VK_NULL_HANDLE, 1, &info, nullptr, &made),
-        "vkCreateGraphicsPipelines '" + name + "'");
-  take(context, made, name);
+  make(context, name, "vkCreateGraphicsPipelines", [&](VkPipeline* made) {
+    return vkCreateGraphicsPipelines(context.device(), VK_NULL_HANDLE, 1, &info, nullptr, made);
+  });
 }
 
-void Pipeline::take(Context& context, VkPipeline made, const std::string& name) {
+// In a thread of its own, as drivers compile for up to seconds, in which the device goes on being heeded.
+void Pipeline::make(Context& context, const std::string& name, const char* call,
+                    const std::function<VkResult(VkPipeline*)>& compile) {
+  VkPipeline made = VK_NULL_HANDLE;
+  std::future<VkResult> result = std::async(std::launch::async, [&] { return compile(&made); });
+  context.heed_until([&] { return result.wait_for(std::chrono::milliseconds(5)) == std::future_status::ready; });
+  check(result.get(), std::string(call) + " '" + name + "'");
   pipeline = UniquePipeline(context.device(), made);
   context.set_name(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(made), name);
 }

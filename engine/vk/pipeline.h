@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 
 #include "engine/device/device.h"
@@ -24,7 +25,8 @@ struct Pipeline : device::Pipeline {
   UniquePipeline pipeline;
 
  private:
-  void take(Context& context, VkPipeline made, const std::string& name);
+  void make(Context& context, const std::string& name, const char* call,
+            const std::function<VkResult(VkPipeline*)>& compile);
 };
 
 }  // namespace quadgraph::vk

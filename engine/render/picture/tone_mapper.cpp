@@ -55,6 +55,7 @@ float ToneMapper::exposure(const PictureBuffers& picture, const ToneOptions& opt
                           .blue = balance[2],
                           .count = static_cast<std::uint32_t>(picture.pixels())};
   for (std::size_t k = 0; k < PICTURE_LAYERS; ++k) push.layers[k] = picture.layers[k].address();
+  const device::Interruptible scope(device_);
   device::Commands commands(device_);
   commands.fill(bins_, 0);
   commands.dispatch(luminance_, push, picture.pixels());

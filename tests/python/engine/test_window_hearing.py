@@ -115,14 +115,20 @@ def test_what_is_changed_amid_a_solve_is_done_at_once(hand: Hand, whole: float, 
     hand.calm()
 
 
-@pytest.fixture
-def opening(tmp_path: Path) -> Iterator[Hand]:
-    """A window on a display of its own, just opened on a body of which nothing is known yet, with a picture that has
-    all that takes long.
-    """
+# What takes long on each device: on lavapipe, which computes a pass in one piece, passes of the solve, and at first to
+# compile them.
+SLOW = {
+    "cpu": ("--sweep-points", "50000", "--radiance", "gathered", "--samples", "8", "--ground"),
+    "llvmpipe": ("--no-correction", "--samples", "1", "--no-ground"),
+}
+
+
+@pytest.fixture(params=SLOW)
+def opening(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Hand]:
+    """A window on a display of its own, just opened on a body of which nothing is known yet."""
     body = write_levels(tmp_path / "ball.qgraph", [icosphere(4, 10), icosphere(3, 10)])
-    options = ("--material", "marble-veins", "--sweep-points", "50000", "--radiance", "gathered", "--samples", "8")
-    with display(tmp_path) as own, ended(Hand(own, tmp_path, *options, "--ground", body=body)) as opened:
+    options = ("--material", "marble-veins", "--device", request.param, *SLOW[request.param])
+    with display(tmp_path) as own, ended(Hand(own, tmp_path, *options, body=body)) as opened:
         yield opened
 
 
