@@ -38,8 +38,10 @@ InnerSurface inner_surface(uint tet, uint across, vec3 direction, vec3 normal) {
   met.normal = normal;
   met.cosine = clamp(dot(direction, normal), 0.0, 1.0);
   met.ratio = sqrt(BODY.etendue.at[tet] / BODY.etendue.at[across]);
-  met.reflected = met.ratio > 1.0 ? internal_reflectance(met.cosine, met.ratio)
-                                  : fresnel_reflectance(met.cosine, 1.0 / met.ratio);
+  bool from_denser = met.ratio > 1.0;
+  float sine2 = from_denser ? met.ratio * met.ratio * (1.0 - met.cosine * met.cosine) : 0.0;  // across
+  float thinner = from_denser ? sqrt(max(1.0 - sine2, 0.0)) : met.cosine;  // cosine in the medium of less index
+  met.reflected = sine2 >= 1.0 ? 1.0 : fresnel_reflectance(thinner, from_denser ? met.ratio : 1.0 / met.ratio);
   return met;
 }
 

@@ -1,9 +1,15 @@
 // One ray of the buried source through the tets. The shader that includes it defines first BODY (tet_ray.glsl) and push
 // constants `push`, which have deposit and deposits as WalkSourcePush does, and defines meet_surface and next_chance
-// behind it. It may define
+// behind it, and before it
+//   WALK_KIND     what adds up the light that is scattered: WALK_TETS, WALK_VERTICES or WALK_CORNERS
+// It may define
 //   WALK_TOWARDS  where power is added up by its direction, as TransportForwardRef has it; or null
 #ifndef QUADGRAPH_WALK_RAY_GLSL
 #define QUADGRAPH_WALK_RAY_GLSL
+
+#ifndef WALK_KIND
+#error "walk_ray.glsl: WALK_KIND is not defined"
+#endif
 
 #include "source/fixed_point.glsl"
 #include "source/inner_surface.glsl"
@@ -21,14 +27,13 @@ vec3 at_corner(Scattered scattered, uint place) {
 
 // `power` at the mean place of each channel between the ray's point and `l`, on its way to the vertices in `pending`.
 void scatter(TetPoint at, vec3 power, vec4 l, vec3 place, inout Scattered pending) {
-  uint deposits = push.deposits & WALK_DEPOSITS;
-  if (deposits == WALK_TETS) {
+  if (WALK_KIND == WALK_TETS) {
     add_power(push.deposit, at.tet, power);
     return;
   }
   Scattered here = Scattered(power.x * mix(at.l, l, place.x), power.y * mix(at.l, l, place.y),
                              power.z * mix(at.l, l, place.z));
-  if (deposits == WALK_VERTICES) {
+  if (WALK_KIND == WALK_VERTICES) {
     pending.red += here.red;
     pending.green += here.green;
     pending.blue += here.blue;
@@ -78,7 +83,7 @@ void end_here(Ray ray, inout Scattered pending) {
 
 // Adds what is pending for a vertex to its deposit.
 void flush(uint tet, uint place, Scattered pending) {
-  if ((push.deposits & WALK_DEPOSITS) != WALK_VERTICES) return;
+  if (WALK_KIND != WALK_VERTICES) return;
   add_power(push.deposit, BODY.tets.at[tet][place], at_corner(pending, place));
 }
 

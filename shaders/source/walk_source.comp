@@ -8,6 +8,7 @@ layout(push_constant, scalar) uniform Block { WalkSourcePush push; };
 
 BodyRef body;
 #define BODY body
+#define WALK_KIND (push.deposits & WALK_DEPOSITS)
 #include "source/walk_ray.glsl"
 #include "source/walk_start.glsl"
 #include "shared/random.glsl"
@@ -34,8 +35,23 @@ void meet_surface(inout Ray ray, uint face) {
   ray.direction = normalize(ray.direction - 2.0 * cosine * n);
 }
 
-void follow(BeamRecord way, uint ray, uint face, TetPoint point, Frame at, vec3 power) {
-  segments += walk(start(way, ray, point, at, power));
+// Ray `ray` of every origin on a face.
+void walk_from(Beam beam, uint face, uint ray) {
+  QuarterLight light = light_on(beam, face);
+  OpenFace open;
+  if (light.largest == vec3(0) || !opens(face, open)) return;
+  Origins from = origins_of(beam.way, light, open, face, ray);
+  for (uint k = from.first; k < FACE_QUARTERS; ++k) {
+    vec3 power = power_from(from, k);
+    if (power == vec3(0)) continue;
+    vec3 l = quarter_centre(k);
+    Frame at = Frame(open.corners * l, open.normal, open.facet, from.tangent, origin_number(face, k), open.surface);
+    TetPoint point = start_on_face(open.tet, open.ids, l);
+    Ray inside = by_one_ray(beam.way)
+                     ? start_even(beam.way, point, at, power)
+                     : start(point, at, entered_by(beam.way, at), incoming(beam.way, ray, at), power);
+    segments += walk(inside);
+  }
 }
 
 uint rays_of(uint beam) {

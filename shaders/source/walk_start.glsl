@@ -1,5 +1,5 @@
 // Where the rays of a beam start. The shader that includes it has push constants `push` with
-// beam_q and scale as WalkSourcePush does, sets `rays`, and defines follow behind it.
+// beam_q and scale as WalkSourcePush does, and sets `rays`.
 #ifndef QUADGRAPH_WALK_START_GLSL
 #define QUADGRAPH_WALK_START_GLSL
 
@@ -71,20 +71,27 @@ vec3 incoming(BeamRecord beam, uint ray, Frame at) {
   return lambertian_incoming(ray, at.normal, at.tangent);
 }
 
-// Share of the power of a face that one ray takes, by its number.
-float share_of(uint ray, OpticalSurface surface) {
-  return rays == 1u ? 1.0 : 0.5 * lambertian(surface).share[ray / 2u];
+// The bundle of rays that stands for even light on a surface, and the surface that it is of; none yet.
+Lambertian bundle;
+OpticalSurface bundle_of = OpticalSurface(0.0, 0.0, 0.0, 0.0);
+
+void find_bundle(OpticalSurface surface) {
+  if (surface.eta == bundle_of.eta && surface.coat_eta == bundle_of.coat_eta && surface.coat == bundle_of.coat) return;
+  bundle = lambertian(surface);
+  bundle_of = surface;
 }
 
-float known_mean_cosine = 0.0, known_for = 0.0;  // and the index that it is known for; 0: none yet
+// Share of the power of a face that one ray takes, by its number.
+float share_of(uint ray) {
+  return rays == 1u ? 1.0 : 0.5 * bundle.share[ray / 2u];
+}
 
-float mean_cosine(OpticalSurface surface) {
-  if (known_for != surface.eta) {
-    Lambertian light = lambertian(surface);
-    known_mean_cosine = dot(light.share, light.cosine);
-    known_for = surface.eta;
-  }
-  return known_mean_cosine;
+// Whether a beam is even light, for which find_bundle is due; and whether one ray stands for all of it.
+bool is_even(BeamRecord way) {
+  return way.kind == BEAM_MEAN || way.kind == BEAM_LAMBERTIAN;
+}
+bool by_one_ray(BeamRecord way) {
+  return way.kind == BEAM_MEAN || (way.kind == BEAM_LAMBERTIAN && rays == 1u);
 }
 
 // Whether rays of a beam have their directions from the tangent of a face.
@@ -92,34 +99,25 @@ bool turned_by_face(BeamRecord way) {
   return way.kind == BEAM_MEAN || (way.kind == BEAM_LAMBERTIAN && rays > 1u);
 }
 
-// Inside direction of BEAM_MEAN.
-vec3 mean_direction(Frame at) {
-  float cosine = mean_cosine(at.surface);
-  return normalize(sqrt(1.0 - cosine * cosine) * at.tangent - cosine * at.normal);
+// The one ray inside for even light. A Lambertian beam goes straight down, as deep as the mean of its directions: askew
+// it would take light aside, each face to its own side.
+Ray start_even(BeamRecord way, TetPoint point, Frame at, vec3 power) {
+  float cosine = dot(bundle.share, bundle.cosine);
+  if (way.kind == BEAM_LAMBERTIAN) return Ray(point, -at.normal, power, vec3(0), 1.0 / cosine);
+  vec3 inside = normalize(sqrt(1.0 - cosine * cosine) * at.tangent - cosine * at.normal);
+  return Ray(point, inside, power, vec3(0), 1.0);
+}
+
+// The ray inside, of power that has entered at a point of a face by facets of that normal and travels along `direction`
+// outside.
+Ray start(TetPoint point, Frame at, vec3 facet, vec3 direction, vec3 power) {
+  return Ray(point, refracted_by_facet(direction, at.normal, facet, at.surface.eta), power, vec3(0), 1.0);
 }
 
 // The normal by which the light of a beam enters: of a bundle from all around that of the face.
 vec3 entered_by(BeamRecord beam, Frame at) {
   return beam.kind == BEAM_LAMBERTIAN ? at.normal : at.facet;
 }
-
-// The way inside of light of a beam that travels along `direction` outside.
-vec3 inside_way(BeamRecord beam, vec3 direction, Frame at) {
-  return refracted_by_facet(direction, at.normal, entered_by(beam, at), at.surface.eta);
-}
-
-// The ray inside, of power that has entered at a point of a face. A Lambertian beam by one ray goes straight down, as
-// deep as the mean of its directions: askew it would take light aside, each face to its own side.
-Ray start(BeamRecord way, uint ray, TetPoint point, Frame at, vec3 power) {
-  if (way.kind == BEAM_LAMBERTIAN && rays == 1u) {
-    return Ray(point, -at.normal, power, vec3(0), 1.0 / mean_cosine(at.surface));
-  }
-  vec3 inside = way.kind == BEAM_MEAN ? mean_direction(at) : inside_way(way, incoming(way, ray, at), at);
-  return Ray(point, inside, power, vec3(0), 1.0);
-}
-
-// Walks a ray from a point of a face.
-void follow(BeamRecord way, uint ray, uint face, TetPoint point, Frame at, vec3 power);
 
 // Face and ray of an invocation, of so many rays a face.
 uvec2 face_and_ray(uint i, uint per_face) {
@@ -130,30 +128,55 @@ uvec2 face_and_ray(uint i, uint per_face) {
 #endif
 }
 
-// Ray `ray` of every origin on a face.
-void walk_from(Beam beam, uint face, uint ray) {
+// Light of a beam on the quarters of a face, W/mm^2, scaled.
+struct QuarterLight {
   vec3 q[FACE_QUARTERS];
+  vec3 least, largest, sum;
+};
+
+QuarterLight light_on(Beam beam, uint face) {
+  QuarterLight light;
+  light.least = vec3(NEVER);
+  light.largest = vec3(0);
+  light.sum = vec3(0);
   vec3 inverse = push.scale.at[0].inverse;
-  vec3 least = vec3(NEVER), largest = vec3(0), sum = vec3(0);
   for (uint k = 0u; k < FACE_QUARTERS; ++k) {
-    q[k] = beam_light(beam, push.beam_q, BODY.face_count, face, k) * inverse;
-    least = min(least, q[k]);
-    largest = max(largest, q[k]);
-    sum += q[k];
+    light.q[k] = beam_light(beam, push.beam_q, BODY.face_count, face, k) * inverse;
+    light.least = min(light.least, light.q[k]);
+    light.largest = max(light.largest, light.q[k]);
+    light.sum += light.q[k];
   }
-  OpenFace open;
-  if (largest == vec3(0) || !opens(face, open)) return;
-  vec3 tangent = vec3(0);
-  if (turned_by_face(beam.way)) tangent = face_tangent(face, open.normal, open.corners[1] - open.corners[0]);
-  bool one = one_ray_does(least, largest, open.corners, open.area);
-  float share = 0.25 * open.area * share_of(ray, open.surface);
-  for (uint k = one ? FACE_CENTRE : 0u; k < FACE_QUARTERS; ++k) {
-    vec3 power = share * (one ? sum : q[k]);
-    if (power == vec3(0)) continue;
-    vec3 l = quarter_centre(k);
-    Frame at = Frame(open.corners * l, open.normal, open.facet, tangent, FACE_QUARTERS * face + k, open.surface);
-    follow(beam.way, ray, face, start_on_face(open.tet, open.ids, l), at, power);
-  }
+  return light;
+}
+
+// The origins of rays on a face: the middles of its quarters from `first` on, or one for the whole face.
+struct Origins {
+  QuarterLight light;
+  uint first;
+  bool one;
+  float share;   // mm^2, of the light of each, that the ray takes
+  vec3 tangent;  // of the face, where directions are by it
+};
+
+Origins origins_of(BeamRecord way, QuarterLight light, OpenFace open, uint face, uint ray) {
+  if (is_even(way)) find_bundle(open.surface);
+  Origins from;
+  from.light = light;
+  from.one = one_ray_does(light.least, light.largest, open.corners, open.area);
+  from.first = from.one ? FACE_CENTRE : 0u;
+  from.share = 0.25 * open.area * share_of(ray);
+  from.tangent = vec3(0);
+  if (turned_by_face(way)) from.tangent = face_tangent(face, open.normal, open.corners[1] - open.corners[0]);
+  return from;
+}
+
+vec3 power_from(Origins from, uint quarter) {
+  return from.share * (from.one ? from.light.sum : from.light.q[quarter]);
+}
+
+// Number of an origin among all of the surface.
+uint origin_number(uint face, uint quarter) {
+  return FACE_QUARTERS * face + quarter;
 }
 
 #endif

@@ -160,9 +160,8 @@ void wander(Ray ray, uint channel) {
 }
 
 void walk(Ray ray, uint channel) {
-  scattered = false;
-  waiting_count = 0u;
-  wander(ray, channel);
+  waiting[0] = Waiting(ray, false);
+  waiting_count = 1u;
   while (waiting_count > 0u) {
     --waiting_count;
     scattered = waiting[waiting_count].scattered;

@@ -26,87 +26,96 @@ float enter_again(Entrance entry, inout Ray ray) {
 // share of the latter.
 const float REFLECTED_RAYS = 4.0;
 
-// What facets of that normal reflect of light that travels along `direction` and whose power `went_in`, where that
-// enters elsewhere; what they reflect into the face is lost.
-void follow_reflected(vec3 direction, vec3 facet, uint face, Frame at, vec3 went_in) {
-  if (!reflects(at.surface) || !sees_body(face)) return;
+// Turns a ray that went in into what facets of that normal reflected of it, where that enters elsewhere; what they
+// reflect into the face is lost. direction: outside, the way the light travels. False where there is none.
+bool enters_reflected(vec3 direction, vec3 facet, uint face, Frame at, inout Ray ray) {
+  if (!reflects(at.surface) || !sees_body(face)) return false;
   float cosine = clamp(-dot(direction, facet), 0.0, 1.0);
   float transmitted = fresnel_transmittance(cosine, at.surface);
-  if (transmitted < 1e-3) return;
+  if (transmitted < 1e-3) return false;
   float reflected = 1.0 / transmitted - 1.0, chance = min(REFLECTED_RAYS * reflected, 1.0);
-  if (uniform_number(state) >= chance) return;
+  if (uniform_number(state) >= chance) return false;
   vec3 mirrored = normalize(direction + 2.0 * cosine * facet);
-  if (facet != at.normal && dot(mirrored, at.normal) <= 0.0) return;
+  if (facet != at.normal && dot(mirrored, at.normal) <= 0.0) return false;
   Entrance entry = through_air(face, at.position, mirrored, state);
-  if (entry.face == NO_FACE) return;
-  Ray ray = Ray(entrance_point(entry), entry.direction, reflected / chance * went_in, vec3(0), 1.0);
+  if (entry.face == NO_FACE) return false;
+  ray = Ray(entrance_point(entry), entry.direction, reflected / chance * ray.power, vec3(0), 1.0);
   entered_again += ray.power;
-  go_in(ray);
+  return true;
 }
 
-// Of a beam whose light comes evenly from everywhere.
-void follow(BeamRecord way, uint ray, uint face, TetPoint point, Frame at, vec3 power) {
-  state = hash(face ^ hash(ray + push.first));
-  entered += power;
-  go_in(start(way, ray, point, at, power));
-  // Of a bundle that one ray stands for no reflection is known.
-  if (push.rays == 1u) return;
-  follow_reflected(incoming(way, ray, at), entered_by(way, at), face, at, power);
-}
+// A ray on its way to a face.
+struct Arriving {
+  vec3 l;          // barycentric coordinates of where it enters
+  vec3 power;      // W, scaled
+  uint number;     // of its origin, among all of the surface
+  vec3 direction;  // of a sky: the way it travels
+};
 
-// A point of a face, by its barycentric coordinates. It has a direction without a tangent. number: of the ray.
-Frame frame_at(OpenFace open, vec3 l, uint number) {
-  return Frame(open.corners * l, open.normal, open.facet, vec3(0), number, open.surface);
-}
-
-// From where it entered by facets, and on from there what these reflect. direction: outside, the way the light travels.
-void enter(OpenFace open, uint face, vec3 l, Frame at, vec3 direction, vec3 power) {
-  entered += power;
-  vec3 inside = refracted_by_facet(direction, at.normal, open.facet, at.surface.eta);
-  go_in(Ray(start_on_face(open.tet, open.ids, l), inside, power, vec3(0), 1.0));
-  follow_reflected(direction, open.facet, face, at, power);
-}
-
-void walk_from_sky(Beam beam, uint face, uint ray) {
-  OpenFace open;
-  if (!opens(face, open)) return;
-  uint number = push.first + push.rays * face + ray;
-  state = hash(face ^ hash(ray + push.first));
+// The one of a sky, without power where it is hidden.
+Arriving from_sky(Beam beam, uint face, uint number, OpenFace open) {
   vec3 along = open.corners[1] - open.corners[0];
   SkyRay drawn = drawn_from_sky(beam, number, open.normal, open.leaning, along, open.surface, state);
-  vec3 power = open.area / float(push.rays) * drawn.let_in * push.scale.at[0].inverse;
-  if (power == vec3(0)) return;
   vec3 l = spread_over_face(number);
-  Frame at = frame_at(open, l, number);
-  if (field.sky.at[face] < 1.0 && meets_any(line_along(at.position, drawn.towards), face, FAR)) return;
-  enter(open, face, l, at, -drawn.towards, power);
+  vec3 power = open.area / float(push.rays) * drawn.let_in * push.scale.at[0].inverse;
+  if (power != vec3(0) && field.sky.at[face] < 1.0 &&
+      meets_any(line_along(open.corners * l, drawn.towards), face, FAR)) {
+    power = vec3(0);
+  }
+  return Arriving(l, power, number, -drawn.towards);
 }
 
 // One of as many rays from each quarter of a face, from anywhere in it.
-void walk_from_quarter(Beam beam, uint face, uint ray) {
-  OpenFace open;
-  if (!opens(face, open)) return;
-  uint number = push.first + push.rays * face + ray, quarter = ray % FACE_QUARTERS;
+Arriving from_quarter(Beam beam, uint face, uint number, uint quarter, OpenFace open) {
   vec3 q = beam_light(beam, push.beam_q, BODY.face_count, face, quarter) * push.scale.at[0].inverse;
-  if (q == vec3(0)) return;
-  vec3 l = spread_over_quarter(number, quarter);
-  state = hash(face ^ hash(ray + push.first));
-  Frame at = frame_at(open, l, number);
-  enter(open, face, l, at, incoming(beam.way, ray, at), open.area / float(push.rays) * q);
+  return Arriving(spread_over_quarter(number, quarter), open.area / float(push.rays) * q, number, vec3(0));
 }
 
-// What enters by a face, of one ray.
+// Follows what goes in, and then what is reflected: both by one call, as each call of this is compiled by itself.
+void enter(Beam beam, uint face, uint ray, TetPoint point, Frame at, Arriving light) {
+  entered += light.power;
+  bool even = push.sky == 0u && beam.way.kind == BEAM_LAMBERTIAN;  // from all around, by a bundle
+  bool one = even && push.rays == 1u;
+  vec3 facet = even ? at.normal : at.facet, direction = light.direction;
+  if (push.sky == 0u && !one) direction = incoming(beam.way, ray, at);
+  Ray inside = one ? start_even(beam.way, point, at, light.power) : start(point, at, facet, direction, light.power);
+  for (uint reflections = 0u; reflections < 2u; ++reflections) {
+    // Of a bundle that one ray stands for no reflection is known.
+    if (reflections == 1u && (one || !enters_reflected(direction, facet, face, at, inside))) break;
+    go_in(inside);
+  }
+}
+
+// What enters by a face, of one ray: of a bundle from its place in each quarter, of other light from anywhere.
 void let_in_by(uint face, uint ray) {
   entered = vec3(0);
   entered_again = vec3(0);
   Beam beam = push.beam.at[0];
   rays = push.rays;
-  if (push.sky == 1u) {
-    walk_from_sky(beam, face, ray);
-  } else if (beam.way.kind == BEAM_LAMBERTIAN) {
-    walk_from(beam, face, ray);
-  } else {
-    walk_from_quarter(beam, face, ray);
+  OpenFace open;
+  if (!opens(face, open)) return;
+  bool even = push.sky == 0u && beam.way.kind == BEAM_LAMBERTIAN;
+  uint number = push.first + push.rays * face + ray, first = 0u, end = 1u;
+  Origins from;
+  from.tangent = vec3(0);
+  if (even) {
+    from = origins_of(beam.way, light_on(beam, face), open, face, ray);
+    first = from.first;
+    end = FACE_QUARTERS;
+  }
+  for (uint k = first; k < end; ++k) {
+    state = hash(face ^ hash(ray + push.first));
+    Arriving light;
+    if (even) {
+      light = Arriving(quarter_centre(k), power_from(from, k), origin_number(face, k), vec3(0));
+    } else if (push.sky == 1u) {
+      light = from_sky(beam, face, number, open);
+    } else {
+      light = from_quarter(beam, face, number, ray % FACE_QUARTERS, open);
+    }
+    if (light.power == vec3(0)) continue;
+    Frame at = Frame(open.corners * light.l, open.normal, open.facet, from.tangent, light.number, open.surface);
+    enter(beam, face, ray, start_on_face(open.tet, open.ids, light.l), at, light);
   }
 }
 

@@ -26,6 +26,7 @@ layout(push_constant, scalar) uniform Block { TransportWalkPush push; };
 TransportFieldRef field;
 #define FIELD field
 #define BODY field.body
+#define WALK_KIND WALK_CORNERS
 #define WALK_TOWARDS push.towards
 #include "source/walk_ray.glsl"
 #include "transport/entering_light.glsl"
