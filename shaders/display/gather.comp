@@ -71,16 +71,16 @@ bool is_clear(uint face) {
 // Light that leaves a surface: through more facets where the body is clear, since there they differ.
 // What a facet shows must not decide, or the mean of all would be another one.
 Leaving through_facets(uint face, vec3 l, vec3 v, vec3 normal, Facets facets) {
-  Leaving sum = leaving(face, l, v, normal, scene.scale, facets);
-  if (!is_rough(facets) || push.facets == 1u || !is_clear(face)) return sum;
-  for (uint k = 1u; k < push.facets; ++k) {
-    ++facets.number;
-    Leaving one = leaving(face, l, v, normal, scene.scale, facets);
+  uint count = is_rough(facets) && is_clear(face) ? push.facets : 1u;
+  Leaving sum = Leaving(vec3(0), vec3(0), 0.0);
+  for (uint k = 0u; k < count; ++k) {
+    Leaving one = leaving(face, l, v, normal, scene.scale, facets, VIEW_PARTS);
     sum.radiance += one.radiance;
     sum.seen += one.seen;
     sum.through += one.through;
+    ++facets.number;
   }
-  float share = 1.0 / float(push.facets);
+  float share = 1.0 / float(count);
   return Leaving(share * sum.radiance, share * sum.seen, share * sum.through);
 }
 
@@ -127,6 +127,14 @@ Seen face_seen(Pixel pixel, uvec4 seen, uint first, inout uint waiting) {
   return all;
 }
 
+// By the share of a pixel that a face takes.
+void add_doubt(inout PixelDoubt doubt, float share, PixelDoubt of_face) {
+  doubt.unlit += share * of_face.unlit;
+  doubt.dimmest += share * of_face.dimmest;
+  doubt.angle += share * of_face.angle;
+  doubt.covered += share * of_face.covered;
+}
+
 void main() {
   Pixel pixel;
   if (!find_pixel(pixel)) return;
@@ -136,7 +144,8 @@ void main() {
   bool doubted = uvec2(push.doubt) != uvec2(0);
   vec3 scattered = vec3(0), specular = vec3(0), seen = vec3(0), unscattered = vec3(0);
   PixelDoubt doubt = PixelDoubt(0.0, 0.0, 0.0, 0.0, 0.0);
-  bool compared = doubted && uvec2(scene.elsewhere[0]) != uvec2(0) && is_compared(pixel.index);
+  uint materials = doubted && uvec2(scene.elsewhere[0]) != uvec2(0) && is_compared(pixel.index) ? 2u : 1u;
+  Opticals middle = BODY.optical;
   float alpha = 0.0;
   while (waiting != 0u) {
     uint k_first = uint(findLSB(waiting));
@@ -146,24 +155,22 @@ void main() {
     float rough = push.transmission < 0.0 ? here.roughness : push.transmission;
     uint start = hash(4u * pixel.index + k_first);
     Facets facets = Facets(rough, start, push.facets * push.frame, 0u, here.lets_out);
-    Leaving light = through_facets(here.face, l, v, here.normal, facets);
-    scattered += here.share * light.radiance;
+    vec3 elsewhere = vec3(0);
+    for (uint material = materials; material-- > 0u;) {
+      BODY.optical = material == 0u ? middle : scene.elsewhere[sample_of_block(pixel.index)];
+      Leaving light = through_facets(here.face, l, v, here.normal, facets);
+      if (material != 0u) {
+        elsewhere = light.radiance;
+        continue;
+      }
+      if (materials == 2u) doubt.medium += here.share * summed(elsewhere - light.radiance);
+      scattered += here.share * light.radiance;
+      seen += here.share * light.seen;
+      unscattered += here.share * light.seen * radiance_behind(-v);
+      if (doubted) add_doubt(doubt, here.share, doubt_at(here.face, l, light));
+    }
     specular += here.specular;
-    seen += here.share * light.seen;
-    unscattered += here.share * light.seen * radiance_behind(-v);
     alpha += here.share;
-    if (!doubted) continue;
-    PixelDoubt of_face = doubt_at(here.face, l, light);
-    doubt.unlit += here.share * of_face.unlit;
-    doubt.dimmest += here.share * of_face.dimmest;
-    doubt.angle += here.share * of_face.angle;
-    doubt.covered += here.share * of_face.covered;
-    if (!compared) continue;
-    Opticals middle = BODY.optical;
-    BODY.optical = scene.elsewhere[sample_of_block(pixel.index)];
-    Leaving other = through_facets(here.face, l, v, here.normal, facets);
-    BODY.optical = middle;
-    doubt.medium += here.share * summed(other.radiance - light.radiance);
   }
   vec3 layers[PICTURE_LAYERS];
   layers[0] = scattered;

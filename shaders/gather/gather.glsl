@@ -152,13 +152,16 @@ bool passes(inout TetPoint at, uint place, uint across, LocalLight here, inout v
 }
 
 // One step of transport: collided and uncollided fluence scattered into a ray that goes from its point into the body.
-Gathered gather(TetPoint at, vec3 direction, inout Facets facets) {
+// leaves: whether it is to be known where it leaves.
+Gathered gather(TetPoint at, vec3 direction, bool leaves, inout Facets facets) {
   Gathered sum = Gathered(vec3(0), vec3(0), NO_ESCAPE, NO_ESCAPE);
   vec3 left = vec3(1);
-  LocalLight here = light_against(at, direction);
-  for (uint step = 0u; step < GATHER_STEPS; ++step) {
+  LocalLight here;
+  bool turned = true;  // since `here` was found
+  for (uint step = 0u;; ++step) {
+    if (turned) here = light_against(at, direction);
     Exit exit = find_exit(at, direction);
-    if (!exit.found) break;
+    if (!exit.found || step == GATHER_STEPS) break;
     Optical optical = optical_in(at.tet);
     at.l = exit_point(at, exit);
     LocalLight there = light_against(at, direction);
@@ -170,11 +173,10 @@ Gathered gather(TetPoint at, vec3 direction, inout Facets facets) {
     if (ends(left, sum.radiance, last, lost)) break;
     uint crossing = crossing_at(at.tet, exit.place), across = crossing >> CROSSING_BITS;
     if (across < BODY.tet_count) {
-      bool turns = bends(at.tet, across);
-      if (!turns || passes(at, exit.place, across, here, direction, left, sum.radiance)) {
+      turned = bends(at.tet, across);
+      if (!turned || passes(at, exit.place, across, here, direction, left, sum.radiance)) {
         enter(at, exit.place, crossing);
       }
-      if (turns) here = light_against(at, direction);
       continue;
     }
     bar(at, exit.place);
@@ -185,7 +187,7 @@ Gathered gather(TetPoint at, vec3 direction, inout Facets facets) {
       float reflected = internal_reflectance(met.cosine, met.surface);
       vec3 through = left * (1.0 - reflected);
       sum.seen += through;
-      if (largest(through) > largest(sum.second.share)) {
+      if (leaves && largest(through) > largest(sum.second.share)) {
         keep(sum.most, sum.second, escape_here(through, face, at, direction, met, n));
       }
       left *= reflected;
@@ -194,7 +196,7 @@ Gathered gather(TetPoint at, vec3 direction, inout Facets facets) {
     } else {
       direction = normalize(direction - 2.0 * dot(direction, n) * n);
     }
-    if (scatters_forwards()) here = light_against(at, direction);
+    turned = scatters_forwards();
   }
   sum.radiance += left * even_radiance(at.tet, here);
   return sum;

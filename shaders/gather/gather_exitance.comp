@@ -40,18 +40,13 @@ void main() {
   if (doubled == vec3(0)) return;
   vec3 normal = normalize(doubled);
   vec3 tangent = face_tangent(face, normal, corners[1] - corners[0]);
-  TetPoint centre = start_on_face(BODY.face_tets.at[face], ids, vec3(1.0 / 3.0));
-  OpticalSurface surface = surface_of(BODY.face_kinds, face);
+  bool through = push.through == 1u;
+  uint parts = through ? VIEW_PARTS : 1u;
+  GatherScales scale = through ? push.scale : GatherScales(uvec2(0));
   vec3 exitance = vec3(0);
   for (uint node = 0u; node < LAMBERTIAN_NODES; ++node) {
     vec3 incoming = lambertian_incoming(2u * node + (node >> 1u), normal, tangent);
-    Facets facets = SMOOTH;
-    if (push.through == 1u) {
-      exitance += LAMBERTIAN_W[node] * leaving(face, vec3(1.0 / 3.0), -incoming, normal, push.scale, facets).radiance;
-      continue;
-    }
-    vec3 radiance = gather(centre, refracted(incoming, normal, surface.eta), facets).radiance;
-    exitance += LAMBERTIAN_W[node] * fresnel_transmittance(sqrt(LAMBERTIAN_U[node]), surface) * radiance / (surface.eta * surface.eta);
+    exitance += LAMBERTIAN_W[node] * leaving(face, vec3(1.0 / 3.0), -incoming, normal, scale, SMOOTH, parts).radiance;
   }
   push.exitance.at[face] = PI * exitance;
 }

@@ -53,12 +53,12 @@ float let_out(inout Facets facets, vec3 outward, Refraction body, bool starts, i
 
 // Light that leaves face `face` at barycentric coordinates `l` along `outward`, at a surface of normal `n`. Fresnel and
 // refraction included: radiance over eta^2 is kept. Where enough of a ray comes out behind, it goes on to the next
-// part of the body, the brightest branch first. scale: null: what is gathered counts as it is.
-Leaving leaving(uint face, vec3 l, vec3 outward, vec3 n, GatherScales scale, Facets facets) {
+// part of the body, the brightest branch first, up to so many `parts`. scale: null: what is gathered counts as it is.
+Leaving leaving(uint face, vec3 l, vec3 outward, vec3 n, GatherScales scale, Facets facets, uint parts) {
   Leaving sum = Leaving(vec3(0), vec3(0), 0.0);
   vec3 share = vec3(1);  // of the light at `face`
   Escape most = NO_ESCAPE, second = NO_ESCAPE;  // that wait to be followed
-  for (uint part = 0u; part < VIEW_PARTS; ++part) {
+  for (uint part = 0u; part < parts; ++part) {
     uvec3 ids = BODY.faces.at[face];
     mat3 corners = corners_of(ids);
     vec3 doubled = cross(corners[1] - corners[0], corners[2] - corners[0]);
@@ -69,7 +69,8 @@ Leaving leaving(uint face, vec3 l, vec3 outward, vec3 n, GatherScales scale, Fac
     if (part == 0u) sum.through = through;
     share *= through;
     TetPoint at = start_on_face(BODY.face_tets.at[face], ids, l);
-    Gathered inside = gather(at, view_ray(outward, n, face_normal, body.surface.eta), facets);
+    bool last = part + 1u == parts;
+    Gathered inside = gather(at, view_ray(outward, n, face_normal, body.surface.eta), !last, facets);
     vec3 radiance = inside.radiance / (body.surface.eta * body.surface.eta);
     sum.radiance += share * (uvec2(scale) == uvec2(0) ? radiance : scaled(radiance, ids, l, scale, body.radiance_norm));
     sum.seen += share * (inside.seen - inside.most.share - inside.second.share);
@@ -77,6 +78,7 @@ Leaving leaving(uint face, vec3 l, vec3 outward, vec3 n, GatherScales scale, Fac
     inside.second.share *= share;
     sum.seen += keep(most, second, inside.most) + keep(most, second, inside.second);
     share = vec3(0);
+    if (last) break;
     while (share == vec3(0) && largest(most.share) > GATHER_END) {
       Escape way = most;
       most = second;

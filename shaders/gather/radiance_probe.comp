@@ -35,7 +35,7 @@ void main() {
   uvec3 ids = BODY.faces.at[face];
   vec3 p = BODY.vertices.at[ids.x];
   vec3 normal = normalize(cross(BODY.vertices.at[ids.y] - p, BODY.vertices.at[ids.z] - p));
-  Leaving light = leaving(face, vec3(1.0 / 3.0), push.direction.at[i], normal, push.scale, SMOOTH);
+  Leaving light = leaving(face, vec3(1.0 / 3.0), push.direction.at[i], normal, push.scale, SMOOTH, VIEW_PARTS);
   push.radiance.at[i] = light.radiance;
   push.transmittance.at[i] = light.seen;
 }

@@ -138,22 +138,6 @@ bool lit_at_surface(uint beam, uint v, vec3 incoming, bool directed, out vec3 en
   return area > 0.0;
 }
 
-Light directed_light(uint beam, uint v, vec3 incoming) {
-  vec3 entry;
-  if (v < push.surface_vertex_count && lit_at_surface(beam, v, incoming, true, entry)) return Light(entry, vec3(0));
-  Met met = back_to_surface(v, -incoming);
-  if (!met.found) return NO_LIGHT;
-  float eta = eta_behind(BODY.face_kinds, met.face);
-  if (eta > 1.0) {
-    // By the normal where the straight way ends one knows how the light was bent.
-    vec3 normal = normal_of(met.face);
-    met = back_to_surface(v, -refracted_by_facet(incoming, normal, facet_of(met.face, normal), eta));
-  }
-  if (!met.found) return NO_LIGHT;
-  vec3 q = q_at(beam, met.face, met.quarter);
-  return Light(entry_fluence(met.face, q, incoming, normal_of(met.face), eta), met.tau);
-}
-
 vec3 surface_normal(uint v) {
   vec3 sum = vec3(0);
   for (uint k = push.face_offset.at[v]; k < push.face_offset.at[v + 1u]; ++k) {
@@ -174,25 +158,42 @@ Lambertian bundle(uint kind, uint face) {
   return kind == BEAM_MEAN ? Lambertian(vec4(0.25), vec4(dot(light.share, light.cosine))) : light;
 }
 
-Light lambertian_light(uint beam, uint kind, uint v) {
-  vec3 entry;
-  if (v < push.surface_vertex_count && lit_at_surface(beam, v, vec3(0), false, entry)) {
-    Lambertian light = bundle(kind, push.face_incidence.at[push.face_offset.at[v]]);
-    return Light(fluence_below(light, vec3(0)) * entry, vec3(0));
-  }
-  Met met = back_to_surface(v, surface_normal(push.nearest.at[v]));
-  if (!met.found) return NO_LIGHT;
-  Lambertian light = bundle(kind, met.face);
-  vec3 whole = fluence_below(light, vec3(0));
-  return Light(whole * q_at(beam, met.face, met.quarter), -log(fluence_below(light, met.tau) / whole));
+bool has_direction(BeamRecord way) {
+  return way.kind == BEAM_DIRECTIONAL || way.kind == BEAM_POINT || way.kind == BEAM_RECTANGLE;
+}
+
+// Where the light of a beam entered that reaches a vertex; `incoming`: the way it travels outside, if it has a direction;
+// eta: of the surface that the straight way ends at.
+Met way_in(uint v, bool directed, vec3 incoming, out float eta) {
+  Met met = back_to_surface(v, directed ? -incoming : surface_normal(push.nearest.at[v]));
+  eta = met.found ? eta_behind(BODY.face_kinds, met.face) : 1.0;
+  if (!directed || eta == 1.0) return met;
+  // By the normal where the straight way ends one knows how the light was bent.
+  vec3 normal = normal_of(met.face);
+  return back_to_surface(v, -refracted_by_facet(incoming, normal, facet_of(met.face, normal), eta));
 }
 
 Light light_of(uint beam, uint v) {
-  BeamRecord record = push.beams.at[beam].way;
-  if (record.kind == BEAM_DIRECTIONAL) return directed_light(beam, v, record.travel_or_from);
-  if (record.kind == BEAM_POINT || record.kind == BEAM_RECTANGLE)
-    return directed_light(beam, v, normalize(BODY.vertices.at[v] - record.travel_or_from));
-  return lambertian_light(beam, record.kind, v);
+  BeamRecord way = push.beams.at[beam].way;
+  bool directed = has_direction(way);
+  vec3 incoming = way.kind == BEAM_DIRECTIONAL ? way.travel_or_from
+                                               : normalize(BODY.vertices.at[v] - way.travel_or_from);
+  vec3 entry;
+  bool at_surface = v < push.surface_vertex_count && lit_at_surface(beam, v, incoming, directed, entry);
+  if (at_surface && directed) return Light(entry, vec3(0));
+  float eta;
+  Met met = Met(true, 0u, 0u, vec3(0));
+  if (at_surface) {
+    met.face = push.face_incidence.at[push.face_offset.at[v]];
+  } else {
+    met = way_in(v, directed, incoming, eta);
+    if (!met.found) return NO_LIGHT;
+    entry = q_at(beam, met.face, met.quarter);
+  }
+  if (directed) return Light(entry_fluence(met.face, entry, incoming, normal_of(met.face), eta), met.tau);
+  Lambertian light = bundle(way.kind, met.face);
+  vec3 whole = fluence_below(light, vec3(0));
+  return Light(whole * entry, at_surface ? vec3(0) : -log(fluence_below(light, met.tau) / whole));
 }
 
 // How much a beam counts in the entry of all.
