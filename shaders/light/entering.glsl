@@ -21,6 +21,11 @@ struct Lamp {
   Leaning leaning;
 };
 
+// How many channels of a light are followed, the first of which does for all that are not.
+uint channels_of(LightRecord light) {
+  return SHAPED && light.kind == LIGHT_PROJECTOR ? 3u : 1u;
+}
+
 // What of a light in one place would enter at one point if nothing hid it, over its power: cos * E * F_t(cos),
 // by the facets.
 float share_from(Lamp lamp, vec3 position, vec3 normal) {

@@ -66,11 +66,10 @@ bool is_hidden(uint face, vec3 point, vec3 towards, float reach) {
 
 // What a light in one place would bring to a point if nothing hid it, W/mm^2 that enter.
 vec3 unhidden(Lamp lamp, vec3 point, vec3 normal) {
-  vec3 share = vec3(share_from(lamp, point, normal));
-  if (SHAPED && lamp.light.kind == LIGHT_PROJECTOR) {
-    for (lamp.channel = 1u; lamp.channel < 3u; ++lamp.channel) share[lamp.channel] = share_from(lamp, point, normal);
-  }
-  return share * lamp.light.power;
+  vec3 share;
+  uint channels = channels_of(lamp.light);
+  for (lamp.channel = 0u; lamp.channel < channels; ++lamp.channel) share[lamp.channel] = share_from(lamp, point, normal);
+  return (channels == 1u ? vec3(share.x) : share) * lamp.light.power;
 }
 
 // Number i of the lights, which may be several records; then i is the last of these.

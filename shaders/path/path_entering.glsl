@@ -40,12 +40,10 @@ vec3 entering_from(uint number, vec3 position, vec3 normal) {
   if (SHAPED && light.kind == LIGHT_ENVIRONMENT) {
     return environment_at(lamp.shape, ENVIRONMENT_ENTERING, normal) * light.power;
   }
-  if (SHAPED && light.kind == LIGHT_PROJECTOR) {
-    vec3 share;
-    for (lamp.channel = 0u; lamp.channel < 3u; ++lamp.channel) share[lamp.channel] = share_seen(lamp, position, normal);
-    return share * light.power;
-  }
-  return share_seen(lamp, position, normal) * light.power;
+  vec3 share;
+  uint channels = channels_of(light);
+  for (lamp.channel = 0u; lamp.channel < channels; ++lamp.channel) share[lamp.channel] = share_seen(lamp, position, normal);
+  return (channels == 1u ? vec3(share.x) : share) * light.power;
 }
 
 // W/mm^2, of all lights.
