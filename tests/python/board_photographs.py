@@ -115,15 +115,19 @@ def exposed(
 ) -> np.ndarray:
     """(h, w, 3) uint16 of one exposure: noise of variance read_out^2 + shot v, black level, 16 bits, clipped."""
     value = exposure * radiance
-    value = (
-        value + generator.normal(size=value.shape) * np.sqrt(noise[0] ** 2 + noise[1] * np.maximum(value, 0)) + black
-    )
-    return np.round(np.clip(value, 0, 1) * FULL).astype(np.uint16)
+    off = generator.standard_normal(value.shape)
+    off *= np.sqrt(noise[0] ** 2 + noise[1] * np.maximum(value, 0))
+    value += off
+    value += black
+    np.clip(value, 0, 1, out=value)
+    value *= FULL
+    return np.round(value, out=value).astype(np.uint16)
 
 
 def write_png(path: Path, picture: np.ndarray) -> None:
-    """Write (h, w, 3) uint16."""
+    """Write (h, w, 3) uint16, or (h, w) in grey."""
     import cv2
 
     as_it_is = [cv2.IMWRITE_PNG_COMPRESSION, 0]  # noise becomes no smaller, and takes longer to write and to read
-    assert cv2.imwrite(str(path), np.ascontiguousarray(picture[..., ::-1]), as_it_is)
+    blue_first = np.ascontiguousarray(picture[..., ::-1]) if picture.ndim == 3 else picture
+    assert cv2.imwrite(str(path), blue_first, as_it_is)

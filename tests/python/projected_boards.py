@@ -69,9 +69,10 @@ class ProjectorScene:
         # What lights each of four places in a pixel of the camera: a pixel of the projector, or the room alone.
         lights = np.where(within, at[:, 1] * SIZE[0] + at[:, 0], SIZE[0] * SIZE[1])
         lights = lights.reshape(lens.height, 2, lens.width, 2)
-        four = [np.ascontiguousarray(lights[:, down, :, right]) for down in (0, 1) for right in (0, 1)]
+        four = [np.ascontiguousarray(lights[:, down, :, right], np.int32) for down in (0, 1) for right in (0, 1)]
         for pattern in stripes.patterns(SIZE, STRIPE):
             sent = np.append(np.where(pattern > 0, 1.0, LEAK), 0) + ROOM
             shown = reflectance * (sum(sent[each] for each in four) / 4)[..., None]
-            variances = noise[0] ** 2 + noise[1] * shown
-            yield shown + self.generator.normal(size=shown.shape) * np.sqrt(variances)
+            off = self.generator.standard_normal(shown.shape)
+            off *= np.sqrt(noise[0] ** 2 + noise[1] * shown)
+            yield shown + off

@@ -45,8 +45,8 @@ def folder(tmp_path_factory, scene) -> Path:
     for number, name in enumerate("abc"):
         (folder / name).mkdir()
         for step, grey in enumerate(scene.frames(number, NOISE, 1)):
-            picture = np.round(np.clip(grey, 0, 1) * 65535).astype(np.uint16)
-            board_photographs.write_png(folder / name / f"{step:02d}.png", np.repeat(picture, 3, axis=2))
+            picture = np.round(np.clip(grey[..., 0], 0, 1) * 65535).astype(np.uint16)
+            board_photographs.write_png(folder / name / f"{step:02d}.png", picture)
     places = [str(folder / name) for name in "abc"]
     assert main(["capture", "projector", *places, "-o", str(folder / "projector.yml"), *OPTIONS]) == 0
     return folder

@@ -57,7 +57,8 @@ def find(board: Board, linear: np.ndarray, refine: bool = True) -> Corners:
     if steps is None:
         return none()
     gap = (board.square - board.marker) / 2
-    refined = [_refined(linear / white, place, step, gap) for place, step in zip(places, steps, strict=True)]
+    shares = linear / white
+    refined = [_refined(shares, place, step, gap) for place, step in zip(places, steps, strict=True)]
     misfits = np.array([np.inf if each is None else each[1] for each in refined])
     usual = float(np.median(misfits[np.isfinite(misfits)])) if np.isfinite(misfits).any() else 0.0
     kept = np.flatnonzero(misfits <= min(_MISFIT, _UNLIKE * usual))

@@ -19,9 +19,10 @@ from quadgraph.acquisition.session.frames import Frame
 
 _ROUNDS = 2  # of weights by the radiance that the last ones gave
 _BINS, _LEAST_IN_BIN = 24, 200
+_TOLD_BY = 1 << 18  # pixels of a pair of exposures
 _MAD = 1.4826  # of normal noise, standard deviation over median absolute deviation
 _BRIGHT = 20.0  # standard deviations, from which on pixels tell the ratio of two exposures
-_ROWS = 256  # merged at a time
+_VALUES = 1 << 15  # merged at a time, few enough for what is made of them on the way to stay in a core's cache
 
 
 def merge(
@@ -33,8 +34,9 @@ def merge(
     """
     shape = frames[0].values.shape
     merged = Radiance(np.empty(shape, np.float32), np.empty(shape, np.float32), np.empty(shape, bool))
-    for first in range(0, shape[0], _ROWS):
-        rows = slice(first, first + _ROWS)
+    step = max(_VALUES // max(shape[1] * shape[2], 1), 1)
+    for first in range(0, shape[0], step):
+        rows = slice(first, first + step)
         _merge_rows(merged, rows, frames, exposures, noise, black, blacks)
     return merged
 
@@ -48,11 +50,12 @@ def _merge_rows(
     black: np.ndarray | None,
     blacks: int,
 ) -> None:
-    shares = frames[0].shares
+    wide = frames[0].values.shape[1]
+    shares = np.tile(frames[0].shares, wide)  # a row of values: NumPy goes by three of them at a time slowly
     floor = noise.read_out**2 * shares * (1 + (1 / blacks if blacks else 0.0))
-    dark = black[rows] if black is not None else 0.0
-    values = [frame.values[rows] - dark for frame in frames]
-    counts = [~frame.saturated[rows] for frame in frames]
+    dark = _flat(black[rows]) if black is not None else 0.0
+    values = [_flat(frame.values[rows]) - dark for frame in frames]
+    counts = [~_flat(frame.saturated[rows]) for frame in frames]
     weights = [np.where(count, time**2, 0.0) for count, time in zip(counts, exposures, strict=True)]
     found = _mean(values, weights, exposures)
     for _ in range(_ROUNDS):
@@ -64,9 +67,14 @@ def _merge_rows(
         found = _mean(values, weights, exposures)
     whole = _sum(weights)
     usable = whole > 0
-    merged.usable[rows] = usable
-    merged.values[rows] = np.where(usable, found, 0)
-    merged.variances[rows] = 1 / np.where(usable, whole, 1)
+    _flat(merged.usable[rows])[:] = usable
+    _flat(merged.values[rows])[:] = np.where(usable, found, 0)
+    _flat(merged.variances[rows])[:] = 1 / np.where(usable, whole, 1)
+
+
+def _flat(rows: np.ndarray) -> np.ndarray:
+    """(h, 3 w) of (h, w, 3)."""
+    return rows.reshape(len(rows), -1)
 
 
 def _mean(values: Sequence[np.ndarray], weights: Sequence[np.ndarray], exposures: Sequence[float]) -> np.ndarray:
@@ -95,13 +103,13 @@ def estimate_noise(
             s, t = exposures[short], exposures[long]
             one, other = frames[short], frames[long]
             dark = black if black is not None else 0.0
-            both = ~one.saturated & ~other.saturated
-            first, second = (one.values - dark) / s, (other.values - dark) / t
+            both = _some(~one.saturated & ~other.saturated)
+            first, second = _some(one.values - dark) / s, _some(other.values - dark) / t
             for channel, share in enumerate(one.shares):
-                fine = both[..., channel]
+                fine = both[channel]
                 # A mean that shot noise leaves independent of the difference: bins of it cut nothing off.
-                mean = (s * first[..., channel][fine] + t * second[..., channel][fine]) / (s + t)
-                for level, variance, count in _bins(mean, (first - second)[..., channel][fine]):
+                mean = (s * first[channel][fine] + t * second[channel][fine]) / (s + t)
+                for level, variance, count in _bins(mean, (first - second)[channel][fine]):
                     rows.append((share * (1 / s**2 + 1 / t**2), share * level * (1 / s + 1 / t)))
                     found.append(variance)
                     certain.append(np.sqrt(count) / variance)
@@ -114,6 +122,12 @@ def estimate_noise(
         return None
     squares = nnls(matrix / scale, np.array(found) * weights)[0] / scale
     return NoiseModel(float(np.sqrt(squares[0])), float(squares[1])) if squares.any() else None
+
+
+def _some(values: np.ndarray) -> np.ndarray:
+    """(3, n) of (h, w, 3): all pixels, or every so many of many, which tell the noise to a few in a thousand."""
+    pixels = values.reshape(-1, 3)
+    return np.ascontiguousarray(pixels[:: max(len(pixels) // _TOLD_BY, 1)].T)
 
 
 def _bins(level: np.ndarray, off: np.ndarray) -> list[tuple[float, float, int]]:
