@@ -139,9 +139,8 @@ def lights_exchanged(_folder: Path, document: Document) -> None:
 def in_a_lit_room(folder: Path, document: Document) -> None:
     """Light from all sides in all photographs."""
     for each in document["photographs"]:
-        radiance = twin_capture.photographed(
-            folder / "finer.qgraph", twin_capture.TRUTH, ROOM, document["cameras"][each["camera"]]
-        )
+        camera = document["cameras"][each["camera"]]
+        [radiance] = twin_capture.photographed(folder / "finer.qgraph", twin_capture.TRUTH, ROOM, [camera])
         change(folder, each, lambda values, more=each["exposure"] * radiance: values + more)
 
 

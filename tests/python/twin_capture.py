@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -52,21 +52,22 @@ def bodies(
 
 
 def photographed(
-    body: Path, material: Mapping[str, Any] | Path, lights: Mapping[str, Any], camera: Mapping[str, Any]
-) -> np.ndarray:
-    """(h, w, 3) W/(mm^2 sr) of scattered light."""
-    around = {name: value for name, value in camera.items() if name not in ("width", "height")}
-    document = {
-        "body": str(body),
-        "material": str(material) if isinstance(material, Path) else {**material, "eta": ETA},
-        "lights": [lights],
-        "camera": around,
-        "picture": {"width": camera["width"], "height": camera["height"], "transmission_roughness": 0},
-    }
+    body: Path, material: Mapping[str, Any] | Path, lights: Mapping[str, Any], cameras: Iterable[Mapping[str, Any]]
+) -> Iterator[np.ndarray]:
+    """(h, w, 3) W/(mm^2 sr) of scattered light, by each camera; solved once."""
     stage = core.Stage("cpu")
-    stage.show(core.scene_file(json.dumps(document)).at(0))
-    stage.solve()
-    return np.array(stage.render().scattered, np.float64)
+    for number, camera in enumerate(cameras):
+        document = {
+            "body": str(body),
+            "material": str(material) if isinstance(material, Path) else {**material, "eta": ETA},
+            "lights": [lights],
+            "camera": {name: value for name, value in camera.items() if name not in ("width", "height")},
+            "picture": {"width": camera["width"], "height": camera["height"], "transmission_roughness": 0},
+        }
+        stage.show(core.scene_file(json.dumps(document)).at(0))
+        if number == 0:
+            stage.solve()
+        yield np.array(stage.render().scattered, np.float64)
 
 
 def write(folder: Path, material: Mapping[str, Any] | Path, seed: int, gains: bool = False) -> Path:
@@ -77,8 +78,8 @@ def write(folder: Path, material: Mapping[str, Any] | Path, seed: int, gains: bo
     generator = np.random.default_rng(seed)
     photographs = []
     for light, stated in LIGHTS.items():
-        for name, camera in CAMERAS.items():
-            radiance = photographed(folder / "finer.qgraph", material, stated, camera)
+        seen = photographed(folder / "finer.qgraph", material, stated, CAMERAS.values())
+        for name, radiance in zip(CAMERAS, seen, strict=True):
             exposure = WHITE / radiance.max()
             value = exposure * radiance * (1 + gains * generator.uniform(-0.2, 0.2))
             value += generator.normal(size=value.shape) * np.sqrt(READ_OUT**2 + SHOT * value)

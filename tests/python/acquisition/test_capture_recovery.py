@@ -46,7 +46,7 @@ def body_of(folder: Path, gain: list[float], light: dict[str, Any] = LAMP) -> An
 
     def at(pose: Pose) -> board_photographs.Body:
         view = view_towards(pose.eye - PLACE, np.zeros(3), RADIUS, DETAIL)
-        radiance = twin_capture.photographed(folder / "finer.qgraph", twin_capture.TRUTH, lamp, view.members())
+        [radiance] = twin_capture.photographed(folder / "finer.qgraph", twin_capture.TRUTH, lamp, [view.members()])
         if not gain:
             gain.append(WHITE / float(np.quantile(radiance, 0.999)))
         shown = radiance * gain[0]
