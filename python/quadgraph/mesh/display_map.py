@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from quadgraph.mesh.surface import Surface
 
@@ -28,6 +27,8 @@ def nearest_faces(points: np.ndarray, surface: Surface) -> tuple[np.ndarray, np.
     Points that are vertices of `surface` are matched exactly; for the others the closest point of the faces around
     the nearest vertices and the nearest face centroids is taken.
     """
+    from scipy.spatial import cKDTree  # here, as programs that only read bodies would take twice as long to start
+
     face, coordinates = np.zeros(len(points), np.int64), np.zeros((len(points), 3))
     distance, vertex = cKDTree(surface.vertices).query(points)
     same = distance == 0
@@ -89,6 +90,8 @@ class _Nearby:
     """Which faces of a surface may be the nearest to a point."""
 
     def __init__(self, surface: Surface) -> None:
+        from scipy.spatial import cKDTree
+
         self.surface = surface
         self._used = np.unique(surface.triangles)
         self._centroids = cKDTree(surface.corners.mean(axis=1))

@@ -7,8 +7,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy import sparse
-from scipy.sparse.csgraph import connected_components
 
 
 @dataclass(frozen=True)
@@ -105,9 +103,8 @@ class Surface:
     @cached_property
     def vertex_components(self) -> tuple[int, np.ndarray]:
         """Number of pieces connected through shared vertices, and (n,) labels; unreferenced vertices are pieces too."""
-        edges, n = self.topology.edges, len(self.vertices)
-        graph = sparse.coo_matrix((np.ones(len(edges), bool), (edges[:, 0], edges[:, 1])), shape=(n, n))
-        return connected_components(graph, directed=False)
+        edges = self.topology.edges
+        return _pieces(edges[:, 0], edges[:, 1], len(self.vertices))
 
     @property
     def components(self) -> int:
@@ -139,9 +136,7 @@ class Surface:
         order = np.argsort(key, kind="stable")
         same = (key[order][1:] == key[order][:-1]) & ~cut[ends.ravel()[order][1:]]
         a, b = corner_of_end[order][1:][same], corner_of_end[order][:-1][same]
-        size = self.triangles.size
-        graph = sparse.coo_matrix((np.ones(len(a), bool), (a, b)), shape=(size, size))
-        return connected_components(graph, directed=False)[1].reshape(-1, 3)
+        return _pieces(a, b, self.triangles.size)[1].reshape(-1, 3)
 
     @cached_property
     def non_manifold_vertices(self) -> np.ndarray:
@@ -284,3 +279,12 @@ class TetMesh:
             (ordered[:, 0] * n + ordered[:, 1]) * n + ordered[:, 2], return_index=True, return_counts=True
         )
         return Surface(self.vertices, faces[np.sort(first[uses == 1])])
+
+
+def _pieces(a: np.ndarray, b: np.ndarray, count: int) -> tuple[int, np.ndarray]:
+    """Number of pieces that links from a to b leave of `count` things, and (count,) labels."""
+    from scipy import sparse  # here, as programs that only hold surfaces would take twice as long to start
+    from scipy.sparse.csgraph import connected_components
+
+    graph = sparse.coo_matrix((np.ones(len(a), bool), (a, b)), shape=(count, count))
+    return connected_components(graph, directed=False)

@@ -146,6 +146,7 @@ class _Caster:
         self.frames = frames(graph.vertices, graph.faces)
         self.corner = corners[:, 0]
         self.edges = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+        self.normal = np.cross(*self.edges)  # as long as twice the area
         self.origins = corners.mean(axis=1) + LIFT * np.linalg.norm(high - low) * self.frames[:, 2]
         self.scene, self.mesh = _scene(corners)
 
@@ -168,14 +169,13 @@ class _Caster:
     def _first_in_double_precision(self, own: np.ndarray, ways: np.ndarray) -> np.ndarray:
         """(n,) nearest face but the own one, edges included; -1: none (Moeller and Trumbore 1997)."""
         first, second = self.edges
-        offset = self.origins[own][:, None] - self.corner
-        across = np.cross(ways[:, None], second)
-        scale = np.einsum("fk,nfk->nf", first, across)
-        turned = np.cross(offset, first)
+        origins = self.origins[own]
+        moments = np.cross(origins, ways)
+        scale = -ways @ self.normal.T
         with np.errstate(divide="ignore", invalid="ignore"):
-            u = np.einsum("nfk,nfk->nf", offset, across) / scale
-            v = np.einsum("nk,nfk->nf", ways, turned) / scale
-            distance = np.einsum("fk,nfk->nf", second, turned) / scale
+            u = (moments @ second.T - ways @ np.cross(second, self.corner).T) / scale
+            v = -(moments @ first.T + ways @ np.cross(self.corner, first).T) / scale
+            distance = (origins @ self.normal.T - (self.corner * self.normal).sum(axis=1)) / scale
         inside = (u >= -1e-12) & (v >= -1e-12) & (u + v <= 1 + 1e-12) & (distance > 0)
         inside[np.arange(len(own)), own] = False
         nearest = np.where(inside, distance, np.inf).argmin(axis=1)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from quadgraph.tets.graph import Graph, barycentric_gradients
 from quadgraph.tets.graph import barycentric as coordinates_of
@@ -35,6 +34,8 @@ def inverse_distance(fine: np.ndarray, coarse: np.ndarray, width: int) -> Transf
     fine: (n, 3), coarse: (m, 3), mm. A coincident point takes all the weight. With fewer than `width` coarse points,
     the row ends with the nearest one repeated at weight 0.
     """
+    from scipy.spatial import cKDTree  # here, as programs that only read bodies would take twice as long to start
+
     present = min(width, len(coarse))
     distance, index = cKDTree(coarse).query(fine, k=present)
     distance, index = distance.reshape(-1, present), index.reshape(-1, present)
@@ -94,6 +95,8 @@ class _Locator:
         return coordinates
 
     def try_nearest(self) -> None:
+        from scipy.spatial import cKDTree
+
         centroids = self.graph.vertices[self.graph.tets].mean(axis=1)
         count = min(_CANDIDATES, len(centroids))
         nearest = cKDTree(centroids).query(self.points, k=count)[1].reshape(-1, count)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from quadgraph.mesh.surface import Surface
 
@@ -15,6 +14,8 @@ def carried(corners: np.ndarray, values: np.ndarray, surface: Surface) -> np.nda
 
     0 where no triangle lies over the same places, whichever way it looks, and where a value is not finite.
     """
+    from scipy.spatial import cKDTree  # here, as programs that only read bodies would take twice as long to start
+
     places, place_of = np.unique(surface.vertices, axis=0, return_inverse=True)
     finite = np.flatnonzero(np.isfinite(corners).all(axis=(1, 2)))
     rounded = corners[finite].astype(np.float32).astype(np.float64).reshape(-1, 3)  # as the surface's are
