@@ -115,12 +115,6 @@ def all_workers(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="session")
-def bunny_qgraph(bunny_path: Path, all_workers: Path) -> Path:
-    """The bundled bunny baked at 100 mm with 6000 vertices on its finest surface, once for all workers."""
-    return baked_once(bunny_path, all_workers / "bunny.qgraph", BakeOptions(height_mm=100.0, surface_vertices=6000))
-
-
-@pytest.fixture(scope="session")
 def small_bunny(bunny_path: Path, all_workers: Path) -> Path:
     """The bundled bunny baked at 60 mm with 3000 vertices on its finest surface, once for all workers."""
     return baked_once(bunny_path, all_workers / "small.qgraph", BakeOptions(height_mm=60.0, surface_vertices=3000))

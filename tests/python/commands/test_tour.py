@@ -31,13 +31,13 @@ def test_every_picture_is_there_and_made_by_a_command_above_it():
 
 
 @pytest.mark.long
-def test_the_tour_runs(tmp_path, bunny_qgraph):
+def test_the_tour_runs(tmp_path, small_bunny):
     """Every command, in a copy of the documents, on a coarser bunny."""
     if shutil.which("montage") is None:
         pytest.skip("ImageMagick is not installed (tools/packages.txt)")
     shutil.copytree(ROOT / "docs", tmp_path / "docs", ignore=shutil.ignore_patterns("benchmarks", "tour-*"))
     (tmp_path / "out" / "tour").mkdir(parents=True)
-    shutil.copy(bunny_qgraph, tmp_path / "out" / "bunny.qgraph")
+    shutil.copy(small_bunny, tmp_path / "out" / "bunny.qgraph")
     path = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
     subprocess.run(
         ["bash", "-euo", "pipefail", "-c", commands()], cwd=tmp_path, env=os.environ | {"PATH": path}, check=True

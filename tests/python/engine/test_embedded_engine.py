@@ -266,7 +266,7 @@ def test_samples_are_drawn_in_stones_too(nest):
     nest.materials = dict.fromkeys(nest.bodies, stone) | {"jelly": clear}
     level = nest._engine.graph.levels[0]
     places = level.vertices[np.unique(level.tets[level.tet_bodies != nest.bodies.index("jelly")])]
-    few, many = (fluence_of(nest, places, points) for points in (10_000, 40_000))
+    few, many = (fluence_of(nest, places, points) for points in (5_000, 20_000))
     assert off(few, many) < 0.08
 
 

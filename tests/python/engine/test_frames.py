@@ -33,11 +33,11 @@ def errors(engine, field: dict) -> tuple[float, float]:
 
 
 @pytest.fixture(scope="module")
-def engine(bunny_qgraph):
+def engine(small_bunny):
     """The small bunny of marble under one light, solved."""
     from quadgraph import _core
 
-    engine = _core.Engine(bunny_qgraph, validation=True)
+    engine = _core.Engine(small_bunny, validation=True)
     engine.set_material("marble")
     engine.set_lights(light(0))
     engine.solve(**SCENE)

@@ -12,7 +12,7 @@ _core = pytest.importorskip("quadgraph._core", reason="the compiled engine is no
 ETA = 1.3
 
 
-@pytest.mark.parametrize("name", ["bunny", "heptoroid"])
+@pytest.mark.parametrize("name", ["bunny", "spot", pytest.param("heptoroid", marks=pytest.mark.long)])
 def test_the_light_that_enters_is_what_rays_find(name, small_bunny, small_body):
     """Half the lit faces within 2%, all the light within 1%, and next to none where it is dark."""
     engine = _core.Engine(small_bunny if name == "bunny" else small_body(name), validation=True)

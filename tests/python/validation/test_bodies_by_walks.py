@@ -24,7 +24,7 @@ APART = 5.5  # mm, where one ends
 NEXT = 6.1  # and the other begins, along x
 PALE, DARK = Material(1.2, 0.004, eta=1.4), Material(0.7, 0.12, eta=1.4)
 LIGHTS = {"sun": DirectionalLight((-1.0, -0.4, 0.3), 1.0), "sky": AmbientLight(1.0)}
-WALKS, BATCHES = 40_000, 12
+WALKS, BATCHES = 20_000, 12
 
 
 def ring() -> Surface:

@@ -74,9 +74,9 @@ def test_a_point_has_its_own_medium():
 
 
 @pytest.mark.parametrize("eta", [1.0, 1.3])
-def test_a_picture_without_the_engine_is_the_engines(eta, bunny_qgraph):
+def test_a_picture_without_the_engine_is_the_engines(eta, small_bunny):
     core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
-    engine = core.Engine(bunny_qgraph)
+    engine = core.Engine(small_bunny)
     engine.set_material(f"sigma_s_prime=1,sigma_a=0.01,eta={eta}")
     engine.set_lights(["directional:-0.5,-0.5,-0.7:1"])
     engine.solve(model="diffusion", tolerance=1e-2, inter_reflection=False)
@@ -86,7 +86,7 @@ def test_a_picture_without_the_engine_is_the_engines(eta, bunny_qgraph):
     from quadgraph.file import qgraph_file
     from quadgraph.mesh.surface import Surface
 
-    file = qgraph_file.read(bunny_qgraph).sections
+    file = qgraph_file.read(small_bunny).sections
     shown = Surface(file["display/vertices"].astype(float), file["display/triangles"].astype(np.int64))
     rays = hits(shown, file["display/normals"], view)
     alpha = rays.shown(shown.triangles, np.ones((len(shown.vertices), 1)))[..., 0]

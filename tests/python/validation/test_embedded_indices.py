@@ -29,7 +29,7 @@ WALKS = 150_000
 BANDS = 4  # of the surface, as wide along the sun's way: from what lies behind to what faces it
 
 
-@njit
+@njit(cache=True)
 def _to_sphere(p, d, radius):
     """Distance along d from p to a sphere about 0, ahead of it; infinite where it is missed."""
     along = p @ d
@@ -40,7 +40,7 @@ def _to_sphere(p, d, radius):
     return near if near > 1e-9 else (far if far > 1e-9 else np.inf)
 
 
-@njit
+@njit(cache=True)
 def _met(d, normal, here, beyond, state):
     """A direction after a smooth surface, and whether it went through. normal: towards where it goes."""
     cosine = d @ normal
@@ -51,7 +51,7 @@ def _met(d, normal, here, beyond, state):
     return ratio * d + (through - ratio * cosine) * normal, True
 
 
-@njit
+@njit(cache=True)
 def _start(sun, radius, state):
     """A place on the outer ball and a direction outside, of the sun along -z or of an even sky."""
     if sun:
@@ -63,7 +63,7 @@ def _start(sun, radius, state):
     return np.array([0.0, 0.0, radius]), d
 
 
-@njit
+@njit(cache=True)
 def _left(count, sun, outer, inner, coefficients, indices, bands, seed):
     """(bands, 2) Power that leaves after it has scattered by bands of the surface along z, of `count` walks that went
     into the outer ball, each of power 1, and its square; coefficients (2, 2): sigma_s' and sigma_a outside and inside;
@@ -169,6 +169,7 @@ def test_what_an_index_within_changes_in_the_sun_is_what_walks_say(balls, case, 
     assert abs(certificate.unlit.power) < 0.03 + 3 * certificate.unlit.power_noise
 
 
+@pytest.mark.long
 @rows
 def test_what_an_index_within_changes_in_all_is_what_walks_say(balls, case, index):
     (share, noise), (alike, its_noise) = all_of(*walked(case, index, False)), all_of(*walked(case, ETA, False))

@@ -47,7 +47,7 @@ def test_light_that_scatters_forwards_is_seen_where_it_goes(tmp_path):
 
         def seen(g: float) -> list[float]:
             engine.material = quadgraph.Material(ALBEDO, 1 - ALBEDO, ETA, g=g)
-            engine.solve()
+            engine.solve(sweep_points=5000)
             found = []
             for degrees in MISSED:
                 way = np.radians(degrees)

@@ -67,7 +67,7 @@ def mean_and_error(values: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
 
 @pytest.mark.parametrize(("scattering", "absorption", "eta"), [(0.4, 0.02, 1.3), (0.1, 0.1, 1.1), (1.0, 0.001, 1.0)])
 def test_walks_through_a_ball_of_triangles_agree_with_those_through_a_sphere(scattering, absorption, eta):
-    surface = ball(5)
+    surface = ball(4)
     patch = zones(surface)
     found = walked(surface, even(scattering, absorption, eta), SUN, patch, walks=10_000)
     mean, error = mean_and_error([batch.scattered / areas(surface, patch) for batch in found])

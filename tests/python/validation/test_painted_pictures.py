@@ -59,7 +59,7 @@ def test_a_painted_ball_looks_as_walks_see_it(tmp_path):
     eye = camera_walks.Eye(np.array([0.0, 0.0, DISTANCE]), np.zeros(3), FOV, "y", PIXELS, PIXELS)
     walker = camera_walks.CameraWalker(BALL, [{"type": "ambient", "irradiance": np.pi}])
     for channel in range(3):
-        seen = walker.see(eye, channel, found.in_channel(channel), 1.3, 512, 3, lambda _share: None)
+        seen = walker.see(eye, channel, found.in_channel(channel), 1.3, 256, 3, lambda _share: None)
         check(shown[..., channel], seen.radiance[0], seen.noise[0], alpha)
 
 

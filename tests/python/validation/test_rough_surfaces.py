@@ -20,7 +20,7 @@ fresnel = pytest.importorskip("quadgraph_validation.truth.fresnel")
 
 AMBIENT = {"type": "ambient", "irradiance": 1.0}
 UP = np.array([0.0, 0.0, 1.0])
-PIXELS, BLOCK, WALKS, RADIUS = 32, 4, 1000, 10.0
+PIXELS, BLOCK, WALKS, RADIUS = 32, 4, 500, 10.0
 EYE = np.array([0.0, 12.0, 50.0])
 FOV = float(2.1 * np.degrees(np.arcsin(RADIUS / np.linalg.norm(EYE))))
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from functools import lru_cache
+from hashlib import sha256
 from typing import NamedTuple
 
 import numpy as np
@@ -20,11 +22,28 @@ class WalkSurface(NamedTuple):
     near: walk_kernel.Clearance
 
 
-@lru_cache(maxsize=4)
+@dataclass(frozen=True)
+class _Shape:
+    """A surface that is the same as another of equal vertices and triangles."""
+
+    digest: bytes
+    surface: Surface = field(compare=False)
+
+
 def walk_surface(surface: Surface) -> WalkSurface:
-    """Make them, or return those of the same surface."""
-    tree = triangle_tree.build(surface.vertices, surface.triangles)
-    low, high = surface.vertices.min(axis=0), surface.vertices.max(axis=0)
+    """Make them, or return those of an equal surface."""
+    digest = sha256()
+    for each in (surface.vertices, surface.triangles):
+        digest.update(f"{each.dtype} {each.shape}".encode())
+        digest.update(each.tobytes())
+    return _made(_Shape(digest.digest(), surface))
+
+
+@lru_cache(maxsize=4)
+def _made(shape: _Shape) -> WalkSurface:
+    vertices, triangles = shape.surface.vertices, shape.surface.triangles
+    tree = triangle_tree.build(vertices, triangles)
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
     cell = float((high - low).max() / _CELLS)
     counts = np.ceil((high - low) / cell).astype(int)
     return WalkSurface(tree, walk_kernel.Clearance(walk_kernel.clearance(tree, low, cell, *counts), low, cell))
