@@ -16,6 +16,7 @@ from shapes import icosphere, moved, write_obj
 
 MIDDLE, RADIUS = np.array([87.5, 112.5, 25.0]), 25.0
 NOISE = (0.0012, 1.5e-4)  # read-out and shot noise of a value, 1 full scale
+KNOWN_NOISE = {"noise": {"read_out": NOISE[0], "shot": NOISE[1]}}  # of a session.json that has single exposures
 EXPOSURES = (0.5, 2.0)
 BLACK = 0.01
 LAMP = {"type": "point", "position": [260.0, 40.0, 260.0], "power": 1000}

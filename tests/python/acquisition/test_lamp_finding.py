@@ -126,7 +126,7 @@ def test_a_lamp_that_is_too_far_is_not_placed(seed):
 
 def test_of_lamps_between_near_and_far_what_is_told_is_as_sure_as_it_says():
     told = []
-    for seed in range(4):
+    for seed in range(2):
         scene = lit_boards.LampScene(seed, far=(900.0, 1500.0))
         with contextlib.suppress(InputError):
             told.append(off(scene, *found(scene))[2])
@@ -163,7 +163,7 @@ def test_a_board_that_is_too_small_in_the_picture_is_named():
 def session(tmp_path_factory) -> tuple[Path, lit_boards.LampScene, float]:
     """A session of four photographs of a ball, and three of the board under a lamp that is to be found."""
     folder = tmp_path_factory.mktemp("lamp")
-    path = board_session.write(folder, board_session.cameras()[:8:2])
+    path = board_session.write(folder, board_session.cameras()[:8:2], exposures=[1.0])
     scene = lit_boards.LampScene(3)
     shown = [scene.shown(pose) for pose in scene.poses]
     gain = lit_boards.FULL / max(float(each.max()) for each in shown)
@@ -178,7 +178,7 @@ def session(tmp_path_factory) -> tuple[Path, lit_boards.LampScene, float]:
         boards.append({"frames": frames})
     document = json.loads(path.read_text())
     document["lights"]["lamp"] = {"type": "point", "calibrate": boards, "reflectance": lit_boards.PAPER}
-    path.write_text(json.dumps(document))
+    path.write_text(json.dumps(document | board_session.KNOWN_NOISE))
     assert main(["capture", "import", str(folder), "-o", str(folder / "capture.json")]) == 0
     return folder, scene, gain
 
@@ -213,7 +213,7 @@ def test_a_lamp_that_shines_forwards_becomes_a_square_that_looks_along_its_axis(
 
 def test_cameras_of_another_program_need_not_know_the_board_s_photographs(session, tmp_path):
     folder, scene, gain = session
-    poses = {f"{number}-1.png": (LENS, pose) for number, pose in enumerate(board_session.cameras()[:8:2])}
+    poses = {f"{number}-0.png": (LENS, pose) for number, pose in enumerate(board_session.cameras()[:8:2])}
     foreign_files.nerf(folder / "transforms.json", poses)
     lamp = json.loads((folder / "session.json").read_text())["lights"]["lamp"]
     path = with_lamp(session, tmp_path, lamp, cameras="transforms.json", world={"scale": 1.0})

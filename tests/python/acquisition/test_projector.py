@@ -178,7 +178,7 @@ def test_the_picture_shows_each_place_what_the_projector_does(scene):
 
 
 def test_a_session_takes_the_projector(folder, tmp_path, capsys):
-    board_session.write(tmp_path, board_session.cameras()[:8:2])
+    board_session.write(tmp_path, board_session.cameras()[:8:2], exposures=[1.0])
     shutil.copy(folder / "projector.yml", tmp_path)
     picture = np.zeros((SIZE[1], SIZE[0], 3), np.uint8)
     picture[:, ::2] = 255
@@ -186,7 +186,7 @@ def test_a_session_takes_the_projector(folder, tmp_path, capsys):
     document = json.loads((tmp_path / "session.json").read_text())
     light = {"type": "projector", "calibrated": "projector.yml", "shown": "shown.png", "power": [3, 2, 1]}
     document["lights"]["lamp"] = light
-    (tmp_path / "session.json").write_text(json.dumps(document))
+    (tmp_path / "session.json").write_text(json.dumps(document | board_session.KNOWN_NOISE))
     assert main(["capture", "import", str(tmp_path), "-o", str(tmp_path / "capture.json")]) == 0
     found = json.loads((tmp_path / "capture.json").read_text())["lights"]["lamp"]
     assert found["file"] == "capture-projector-1.exr"
