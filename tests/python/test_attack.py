@@ -78,7 +78,7 @@ FAKES = {
     "traceback, escapes": fake(r"print('\x1b[31mred')"),
     "memory": fake("import time; x = bytearray(b'x' * 3 * 10**8); time.sleep(60)", memory=GIGABYTE // 10),
     "slow": fake("while True: pass", seconds=0.5),
-    "slow, deaf": fake(DEAF, signals=((1.0, signal.SIGTERM),), seconds=4),
+    "slow, deaf": fake(DEAF, signals=((0.3, signal.SIGTERM),), seconds=0.6),
     "silent": fake("print(2)", judge=lambda place, outcome: "two"),
     "silent, accepted": fake("print(2)", expect="refused"),
     "left": fake("open('more', 'w').write('x')"),

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import json
 import subprocess
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -31,24 +34,32 @@ def test_what_is_reached_ends_well_and_is_told_step_by_step(tmp_path, capsys):
     assert "converge: 1 solve of" in capsys.readouterr().err
 
 
-def test_what_is_not_reached_ends_with_3_and_is_written_with_its_noise(tmp_path, capsys):
-    picture = tmp_path / "mean.exr"
-    status, report = rendered(tmp_path, "-o", str(picture), "--converge", "0.1%")
+@pytest.fixture(scope="module")
+def not_reached(tmp_path_factory) -> tuple[Path, int, dict, str, str]:
+    """The picture of an error that cannot be reached, exit code, report, and what was printed, out and err."""
+    folder = tmp_path_factory.mktemp("mean")
+    out, err = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        status, report = rendered(folder, "-o", str(folder / "mean.exr"), "--converge", "0.1%", "--device", "cpu")
+    return folder / "mean.exr", status, report, out.getvalue(), err.getvalue()
+
+
+def test_what_is_not_reached_ends_with_3_and_is_written_with_its_noise(not_reached):
+    picture, status, report, out, err = not_reached
     assert status == 3
     found = report["convergence"]
     assert not found["reached"]
     assert report["picture_error"] == found["steps"][-1]["error"]
-    told = capsys.readouterr()
-    assert told.err.count("converge: ") == len(found["steps"])
-    assert f"warning: converge 0.1%: {found['limit']}" in told.out
+    assert err.count("converge: ") == len(found["steps"])
+    assert f"warning: converge 0.1%: {found['limit']}" in out
     written = picture.read_bytes()
     assert all(f"standard_error.{channel}\0".encode() in written for channel in "RGB")
     assert f"mean of {found['steps'][-1]['solves']} solves".encode() in written
 
 
 @pytest.mark.skipif(ENGINE is None, reason="quadgraph-engine is not built: run tools/setup")
-def test_the_engine_without_python_does_the_same(tmp_path):
-    _, report = rendered(tmp_path, "-o", str(tmp_path / "mean.png"), "--converge", "0.1%", "--device", "cpu")
+def test_the_engine_without_python_does_the_same(tmp_path, not_reached):
+    report = not_reached[2]
     command = [str(ENGINE), str(tiny.PATH), "--headless", "--json", "--device", "cpu", *LOOK, *QUICK]
     done = subprocess.run(
         [*command, "--converge", "0.1%", "-o", str(tmp_path / "other.exr")], capture_output=True, text=True

@@ -17,6 +17,9 @@ from shapes import cube, write_obj
 pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
 
 
+SMALL = ("--size", "64x64", "--no-correction")
+
+
 def run(arguments: list[str | Path], room: int | None = None, **streams) -> subprocess.CompletedProcess:
     """Run the command line where no file becomes longer than `room` bytes, which fails as a full disk does."""
     return subprocess.run(
@@ -38,14 +41,14 @@ def scene(folder: Path) -> Path:
 @pytest.mark.parametrize(
     ("name", "room", "arguments"),
     [
-        ("out.png", 400, ["render", "BODY", "-o", "OUT", "--size", "64x64"]),
-        ("out.exr", 400, ["render", "BODY", "-o", "OUT", "--size", "64x64"]),
-        ("out.json", 100, ["solve", "BODY", "--json", "OUT"]),
-        ("out.npz", 100, ["solve", "BODY", "--field", "OUT"]),
+        ("out.png", 400, ["render", "BODY", "-o", "OUT", *SMALL]),
+        ("out.exr", 400, ["render", "BODY", "-o", "OUT", *SMALL]),
+        ("out.json", 100, ["solve", "BODY", "--json", "OUT", "--no-correction"]),
+        ("out.npz", 100, ["solve", "BODY", "--field", "OUT", "--no-correction"]),
         ("out.qgraph", 100, ["bake", "MESH", "--unit", "mm", "--surface-only", "-o", "OUT"]),
-        ("out.jpg", 400, ["render", "BODY", "-o", "OUT", "--size", "64x64"]),
-        ("out.gif", 400, ["turntable", "BODY", "-o", "OUT", "--size", "64x64", "--frames", "3"]),
-        ("sheet.png", 400, ["sheet", "BODY", "-o", "OUT", "--size", "64x64"]),
+        ("out.jpg", 400, ["render", "BODY", "-o", "OUT", *SMALL]),
+        ("out.gif", 400, ["turntable", "BODY", "-o", "OUT", *SMALL, "--frames", "3"]),
+        ("sheet.png", 400, ["sheet", "BODY", "-o", "OUT", *SMALL]),
         ("out.mp4", 500, ["render", "SCENE", "--frames", "-o", "OUT"]),
     ],
 )
