@@ -84,6 +84,12 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     items.sort(key=lambda item: rank.get(item.path.name, len(LONGEST)))
 
 
+@pytest.fixture
+def short(request: pytest.FixtureRequest) -> bool:
+    """Whether long studies are left out of this run, in which others need not be as exact as documents state them."""
+    return "not long" in request.config.option.markexpr
+
+
 @pytest.fixture(scope="session")
 def shared() -> Path:
     """The folder `shared` beside the repository, or the one that QUADGRAPH_SHARED names."""

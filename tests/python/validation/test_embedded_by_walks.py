@@ -107,7 +107,7 @@ def as_volume(path: Path, medium, light, truth: Truth) -> dict[str, tuple[float,
 
 
 @pytest.mark.parametrize(("which", "stones", "light"), CASES)
-def test_stones_in_a_ball_give_what_walks_say(baked, request, which, stones, light):
+def test_stones_in_a_ball_give_what_walks_say(baked, request, short, which, stones, light):
     around, within = MATERIALS[which]
     medium = embedded_medium(around, [(shape, within) for shape in STONES[stones].values()], CELL)
     quick = not request.node.get_closest_marker("long")
@@ -120,9 +120,9 @@ def test_stones_in_a_ball_give_what_walks_say(baked, request, which, stones, lig
         engine.materials = dict.fromkeys(engine.bodies, around)
         engine.solve()
         without = truth.off(engine)
-    volume = {} if quick else as_volume(baked(""), medium, LIGHTS[light], truth)
+    volume = {} if short else as_volume(baked(""), medium, LIGHTS[light], truth)
     for part, (off, noise) in found.items():
-        others = "" if quick else f"as a volume {100 * volume[part][0]:.2f}%, "
+        others = "" if short else f"as a volume {100 * volume[part][0]:.2f}%, "
         others += f"without {100 * without[part][0]:.2f}%"
         print(f"{which} {stones}, {light}, {part}: {100 * off:.2f}% off, {others}, noise {100 * noise:.2f}%")
         assert noise < (0.015 if part == "lit" else 0.03)

@@ -39,7 +39,7 @@ def walked(degrees: float) -> tuple[float, float]:
     return count * per_count / (np.pi * RADIUS**2), count**-0.5
 
 
-def test_light_that_scatters_forwards_is_seen_where_it_goes(tmp_path):
+def test_light_that_scatters_forwards_is_seen_where_it_goes(tmp_path, short):
     """Towards the light there is less of it than the reduced coefficient says, to the side more."""
     path = write_levels(tmp_path / "ball.qgraph", [icosphere(4, RADIUS), icosphere(3, RADIUS)])
     with quadgraph.Engine(path, device="cpu") as engine:
@@ -47,7 +47,7 @@ def test_light_that_scatters_forwards_is_seen_where_it_goes(tmp_path):
 
         def seen(g: float) -> list[float]:
             engine.material = quadgraph.Material(ALBEDO, 1 - ALBEDO, ETA, g=g)
-            engine.solve(sweep_points=5000)
+            engine.solve(sweep_points=5000 if short else 20_000)
             found = []
             for degrees in MISSED:
                 way = np.radians(degrees)

@@ -20,7 +20,7 @@ fresnel = pytest.importorskip("quadgraph_validation.truth.fresnel")
 
 AMBIENT = {"type": "ambient", "irradiance": 1.0}
 UP = np.array([0.0, 0.0, 1.0])
-PIXELS, BLOCK, WALKS, RADIUS = 32, 4, 500, 10.0
+PIXELS, BLOCK, WALKS, RADIUS = 32, 4, 1000, 10.0
 EYE = np.array([0.0, 12.0, 50.0])
 FOV = float(2.1 * np.degrees(np.arcsin(RADIUS / np.linalg.norm(EYE))))
 
@@ -83,12 +83,14 @@ def taken(tmp_path: Path, surface: Surface, material: str, **options) -> list[Pi
         return [engine.render(camera, **size, transmission_roughness=alpha) for alpha in alphas]
 
 
-def errors(tmp_path: Path, surface: Surface, alpha: float, sigma_s: float, sigma_a: float, eta: float) -> dict:
+def errors(
+    tmp_path: Path, surface: Surface, walks: int, alpha: float, sigma_s: float, sigma_a: float, eta: float
+) -> dict:
     """Relative RMS over blocks that the body fills, and at its rim, without the walks' noise: as rough, and smooth."""
     even = known_material.KnownMaterial.even(np.full(3, sigma_s), np.full(3, sigma_a), eta)
     eye = camera_walks.Eye(EYE.copy(), np.zeros(3), FOV, "y", PIXELS, PIXELS)
     walker = camera_walks.CameraWalker(surface, [AMBIENT])
-    truth = walker.see(eye, 0, even.in_channel(0), eta, WALKS, 8, lambda _share: None, roughness=alpha)
+    truth = walker.see(eye, 0, even.in_channel(0), eta, walks, 8, lambda _share: None, roughness=alpha)
     text = f"sigma_s_prime={sigma_s},sigma_a={sigma_a},eta={eta}"
     rough, smooth = taken(tmp_path, surface, text, alphas=(alpha, 0))
     covered = blocks(rough.alpha)
@@ -102,16 +104,16 @@ def errors(tmp_path: Path, surface: Surface, alpha: float, sigma_s: float, sigma
     return result
 
 
-def test_the_rim_of_a_dense_body_is_as_bright_as_walks_have_it(tmp_path):
-    found = errors(tmp_path, icosphere(3, RADIUS), 0.3, 1.0, 0.01, 1.4)
+def test_the_rim_of_a_dense_body_is_as_bright_as_walks_have_it(tmp_path, short):
+    found = errors(tmp_path, icosphere(3, RADIUS), WALKS // 2 if short else WALKS, 0.3, 1.0, 0.01, 1.4)
     assert found["filled", "rough"] < 0.015
     assert found["rim", "rough"] < 0.04
     assert found["rim", "smooth"] > 2 * found["rim", "rough"]
 
 
-def test_a_clear_lens_is_frosted(tmp_path):
+def test_a_clear_lens_is_frosted(tmp_path, short):
     ball = icosphere(3, RADIUS)
     lens = Surface(ball.vertices * (1, 1, 0.25), ball.triangles)
-    found = errors(tmp_path, lens, 0.3, 0.06, 0.02, 1.5)
+    found = errors(tmp_path, lens, WALKS // 2 if short else WALKS, 0.3, 0.06, 0.02, 1.5)
     assert found["filled", "rough"] < 0.07
     assert found["filled", "smooth"] > 2 * found["filled", "rough"]
