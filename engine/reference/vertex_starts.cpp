@@ -18,16 +18,19 @@ struct Neighbours {
   std::vector<std::uint32_t> offset, neighbour;
 };
 
-Neighbours neighbours_of(const Level& level) {
+Neighbours neighbours_of(const Level& level, const Listener& listener) {
   Neighbours result;
   result.offset.assign(level.vertices.size() + 1, 0);
-  for (const glm::uvec4& tet : level.tets) {
-    for (int k = 0; k < 4; ++k) result.offset[tet[k] + 1] += 3;
+  for (std::size_t t = 0; t < level.tets.size(); ++t) {
+    heed(listener, t);
+    for (int k = 0; k < 4; ++k) result.offset[level.tets[t][k] + 1] += 3;
   }
   for (std::size_t v = 1; v < result.offset.size(); ++v) result.offset[v] += result.offset[v - 1];
   result.neighbour.resize(result.offset.back());
   std::vector<std::uint32_t> next(result.offset.begin(), result.offset.end() - 1);
-  for (const glm::uvec4& tet : level.tets) {
+  for (std::size_t t = 0; t < level.tets.size(); ++t) {
+    heed(listener, t);
+    const glm::uvec4& tet = level.tets[t];
     for (int k = 0; k < 4; ++k) {
       for (int j = 1; j < 4; ++j) result.neighbour[next[tet[k]]++] = tet[(k + j) % 4];
     }
@@ -45,7 +48,7 @@ std::vector<std::uint32_t> nearest_of(const Level& level, std::span<const std::u
   constexpr Offer nothing{std::numeric_limits<double>::infinity(), none, none};
   std::vector<Offer> best(level.vertices.size(), nothing);
   for (const std::uint32_t source : sources) offers.emplace(0.0, source, source);
-  const Neighbours around = neighbours_of(level);
+  const Neighbours around = neighbours_of(level, listener);
   for (std::size_t taken = 0; !offers.empty(); ++taken) {
     heed(listener, taken);
     const auto [distance, v, s] = offers.top();

@@ -369,8 +369,8 @@ struct Engine::Implementation {
 
   void display_room() {
     if (triangle_face.size() > 0) return;
-    triangle_face = device::upload<std::uint32_t>(device, display_faces(graph.display(), graph.levels()[0]),
-                                                  "display/faces of triangles");
+    const auto faces = display_faces(graph.display(), graph.levels()[0], [this] { device.heed(); });
+    triangle_face = device::upload<std::uint32_t>(device, faces, "display/faces of triangles");
   }
 };
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/base/error.h"
+#include "engine/base/listener.h"
 #include "engine/solve/moved_bytes.h"
 #include "interface/source/right_hand_side_buried.comp.h"
 #include "interface/source/tet_cells.comp.h"
@@ -41,9 +42,10 @@ std::uint32_t crossing(const Level& level, const glm::uvec4& tet, int k, std::ui
 }
 
 // But for the shape.
-std::vector<gpu::TetCell> cells_of(const Level& level) {
+std::vector<gpu::TetCell> cells_of(const Level& level, const Listener& listener) {
   std::vector<gpu::TetCell> result(level.tets.size());
   for (std::size_t t = 0; t < level.tets.size(); ++t) {
+    heed(listener, t);
     for (int k = 0; k < 4; ++k) result[t].crossings[k] = crossing(level, level.tets[t], k, level.links[t][k]);
   }
   return result;
@@ -71,7 +73,8 @@ SourceWalk::SourceWalk(device::Device& device, const Level& level, std::uint32_t
     throw InputError(prefix_ + "has " + std::to_string(level.node_count()) +
                      " tets and outside faces; the buried source takes up to " + std::to_string(most_nodes));
   }
-  cells_ = device::upload<gpu::TetCell>(device, cells_of(level), "geometry/" + prefix_ + "cells");
+  cells_ =
+      device::upload<gpu::TetCell>(device, cells_of(level, [&] { device.heed(); }), "geometry/" + prefix_ + "cells");
   body_on_device_ = {device, sizeof(gpu::BodyRef), device::Place::device, "walk/" + prefix_ + "body"};
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 using Neighbours = std::vector<std::array<std::uint32_t, 3>>;  // of a face, across the edge opposite each corner
 
-Neighbours neighbours_of(const Level& level) {
+Neighbours neighbours_of(const Level& level, const Listener& listener) {
   constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
   struct Side {
     std::uint32_t low, high, face, corner;
@@ -19,6 +19,7 @@ Neighbours neighbours_of(const Level& level) {
   std::vector<Side> sides;
   sides.reserve(3 * level.faces.size());
   for (std::uint32_t f = 0; f < level.face_count(); ++f) {
+    heed(listener, f);
     for (std::uint32_t k = 0; k < 3; ++k) {
       const auto [low, high] =
           std::minmax(level.faces[f][static_cast<int>((k + 1) % 3)], level.faces[f][static_cast<int>((k + 2) % 3)]);
@@ -29,6 +30,7 @@ Neighbours neighbours_of(const Level& level) {
             [](const Side& a, const Side& b) { return std::pair(a.low, a.high) < std::pair(b.low, b.high); });
   Neighbours neighbours(level.faces.size(), {none, none, none});
   for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
+    heed(listener, i);
     const Side &a = sides[i], &b = sides[i + 1];
     if (a.low != b.low || a.high != b.high) continue;
     neighbours[a.face][a.corner] = b.face;
@@ -79,11 +81,12 @@ std::pair<std::uint32_t, double> walk_to(const Level& level, const Neighbours& n
 
 }  // namespace
 
-std::vector<std::uint32_t> display_faces(const DisplayMesh& mesh, const Level& level) {
-  const Neighbours neighbours = neighbours_of(level);
+std::vector<std::uint32_t> display_faces(const DisplayMesh& mesh, const Level& level, const Listener& listener) {
+  const Neighbours neighbours = neighbours_of(level, listener);
   std::vector<std::uint32_t> faces;
   faces.reserve(mesh.triangles.size());
   for (const glm::uvec3& triangle : mesh.triangles) {
+    heed(listener, faces.size());
     glm::dvec3 centroid(0);
     for (int k = 0; k < 3; ++k) centroid += glm::dvec3(mesh.vertices[triangle[k]]) / 3.0;
     std::pair<std::uint32_t, double> best{0, std::numeric_limits<double>::max()};

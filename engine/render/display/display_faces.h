@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/base/listener.h"
 #include "engine/file/graph.h"
 
 namespace quadgraph {
@@ -11,6 +12,6 @@ namespace quadgraph {
 // Per display triangle the outside face of `level` (the finest) under its centroid: found from the faces of its
 // vertices, going over edges towards the centroid. Where the display mesh is the surface of the level, each triangle's
 // own face.
-std::vector<std::uint32_t> display_faces(const DisplayMesh& mesh, const Level& level);
+std::vector<std::uint32_t> display_faces(const DisplayMesh& mesh, const Level& level, const Listener& listener = {});
 
 }  // namespace quadgraph
