@@ -116,7 +116,8 @@ def test_the_page_on_the_chart_says_what_the_record_does(request):
     docs = request.config.rootpath / "docs"
     lines = (docs / "chart.md").read_text().splitlines()
     for scene in records.read(docs / "benchmarks" / "chart.json")["scenes"]:
-        points = {point["name"]: point["errors"]["transport"] for point in scene["points"]}
+        measured = [point for point in scene["points"] if "failed" not in point]
+        points = {point["name"]: point["errors"]["transport"] for point in measured}
         (line,) = [line for line in lines if line.split(",")[0].split(" |")[0] == f"| {scene['name']}"]
         told = [cell.strip() for cell in line.split("|")[2:-1]]
         found = [[points[name].get(part) for part in records.PARTS] for name in COLUMNS]
