@@ -123,11 +123,14 @@ SLOW = {
 }
 
 
-@pytest.fixture(params=SLOW)
+@pytest.fixture(params=[("cpu", 4), ("llvmpipe", 4), pytest.param(("cpu", 7), marks=pytest.mark.long)])
 def opening(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Hand]:
-    """A window on a display of its own, just opened on a body of which nothing is known yet."""
-    body = write_levels(tmp_path / "ball.qgraph", [icosphere(4, 10), icosphere(3, 10)])
-    options = ("--material", "marble-veins", "--device", request.param, *SLOW[request.param])
+    """A window on a display of its own, just opened on a body of which nothing is known yet: the largest has 160
+    thousand vertices on its surface.
+    """
+    device, fineness = request.param
+    body = write_levels(tmp_path / "ball.qgraph", [icosphere(fineness, 10), icosphere(3, 10)])
+    options = ("--material", "marble-veins", "--device", device, *SLOW[device])
     with display(tmp_path) as own, ended(Hand(own, tmp_path, *options, body=body)) as opened:
         yield opened
 
