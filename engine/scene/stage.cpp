@@ -18,6 +18,7 @@ std::unique_ptr<Engine> Stage::engine_of(Loaded body) const {
 }
 
 void Stage::prepare() {
+  if (engine_ && loaded_.path == scene_.body) return;  // it is shown
   try {
     prepared_ = engine_of(loaded_);
   } catch (const DeviceError&) {

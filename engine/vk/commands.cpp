@@ -10,8 +10,8 @@ namespace quadgraph::vk {
 namespace {
 
 constexpr VkPipelineStageFlags2 all_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-constexpr std::uint64_t slice_ns = 5'000'000;  // of waiting for software
 constexpr VkAccessFlags2 all_access = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+constexpr std::uint64_t slice_ns = 5'000'000;  // of waiting for software
 
 VkRenderingAttachmentInfo attachment(const ImageMemory& image, VkImageLayout layout, const VkClearValue& clear) {
   VkRenderingAttachmentInfo info{};

@@ -26,6 +26,16 @@ TEST_CASE("a body is prepared beside the one that is shown, and takes its place 
   CHECK(stage.engine().surface_field().exitance == plain.engine().surface_field().exitance);
 }
 
+TEST_CASE("a body that is shown already is not made again") {
+  Stage stage(test_device());
+  const Scene scene{.body = test_data("tiny.qgraph")};
+  stage.show(scene);
+  const std::uint64_t made = stage.engine().device().allocation_count();
+  stage.take_up(Stage::load(scene.body));
+  stage.prepare();
+  CHECK(stage.engine().device().allocation_count() == made);
+}
+
 TEST_CASE("a body that was prepared and is not shown next is forgotten") {
   Stage stage(test_device());
   const Scene scene{.body = test_data("tiny.qgraph")};
