@@ -51,6 +51,7 @@ Viewer::~Viewer() {
 }
 
 void Viewer::run() {
+  window_.appear();
   // What is said of it is seen before its first picture is made; Dear ImGui shows what is new in its second frame.
   for (int frame = 0; !shown_ && frame < 2; ++frame) {
     build_widgets({});

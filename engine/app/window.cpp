@@ -53,6 +53,7 @@ Window::Window(const std::string& name, int width, int height) : name_(name) {
     if (glfwVulkanSupported() != GLFW_TRUE) no_window("this display has no Vulkan");
     glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
     glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
+    glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
     window_ = glfwCreateWindow(width, height, title().c_str(), nullptr, nullptr);
     if (window_ == nullptr) no_window("the display opens no window");
   } catch (...) {
@@ -66,6 +67,10 @@ Window::Window(const std::string& name, int width, int height) : name_(name) {
 Window::~Window() {
   glfwDestroyWindow(window_);
   glfwTerminate();
+}
+
+void Window::appear() {
+  glfwShowWindow(window_);
 }
 
 void Window::listen() {

@@ -23,6 +23,9 @@ class Window {
 
   GLFWwindow* handle() const { return window_; }
 
+  // It is hidden until then.
+  void appear();
+
   // To present to it. The window must outlive what is made of it.
   vk::SurfaceSource surface() const;
 

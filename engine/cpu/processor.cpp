@@ -3,10 +3,13 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cstdlib>
+#include <exception>
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <thread>
 
 #include "engine/base/error.h"
 #include "engine/cpu/objects.h"
@@ -104,6 +107,26 @@ Processor::Processor(const ProcessorOptions& options)
 
 Processor::~Processor() {
   device::count_closed(books_);
+}
+
+void Processor::run(std::uint32_t count, std::uint32_t part,
+                    const std::function<void(std::uint32_t, std::uint32_t)>& work, const std::function<void()>& last) {
+  const auto caller = std::this_thread::get_id();
+  std::atomic<bool> given_up = false;
+  std::exception_ptr why;
+  const auto run_part = [&](std::uint32_t begin, std::uint32_t end) {
+    if (given_up.load(std::memory_order_relaxed)) return;
+    work(begin, end);
+    if (std::this_thread::get_id() != caller) return;
+    try {
+      heed();
+    } catch (...) {
+      why = std::current_exception();
+      given_up.store(true, std::memory_order_relaxed);
+    }
+  };
+  threads_.run(count, part, run_part, last);
+  if (why) std::rethrow_exception(why);
 }
 
 // Linux grants more than there is, and ends the process when it is used.

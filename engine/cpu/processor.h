@@ -1,6 +1,8 @@
 // The processor as a device: shaders compiled as C++ (engine/cpu/kernel.h), run at once as they are recorded.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <memory>
 
 #include "engine/cpu/thread_pool.h"
@@ -20,6 +22,11 @@ class Processor : public device::Device {
   ~Processor() override;
 
   ThreadPool& threads() { return threads_; }
+
+  // ThreadPool::run, but the caller heeds the device's check between its parts; what that throws leaves out the rest.
+  void run(std::uint32_t count, std::uint32_t part, const std::function<void(std::uint32_t, std::uint32_t)>& work,
+           const std::function<void()>& last = {});
+
   DrawMemory& draw_memory() { return draw_memory_; }
 
   std::unique_ptr<device::Memory> allocate(std::uint64_t bytes, device::Place place, const std::string& name) override;

@@ -5,16 +5,13 @@
 #include <cstdint>
 
 #include "engine/cpu/objects.h"
-#include "engine/cpu/thread_pool.h"
-#include "engine/cpu/triangles.h"
+#include "engine/cpu/processor.h"
 #include "engine/device/device.h"
 
 namespace quadgraph::cpu {
 
-// Draws as device::Recording::draw asks. The same picture with any number of threads. `memory` is kept from draw to
-// draw.
-void rasterise(ThreadPool& threads, const device::DrawImages& target, const device::Viewport& viewport,
-               const GraphicsPipeline& pass, const void* push, const std::uint32_t* indices, std::uint32_t vertices,
-               DrawMemory& memory);
+// Draws as device::Recording::draw asks. The same picture with any number of threads.
+void rasterise(Processor& processor, const device::DrawImages& target, const device::Viewport& viewport,
+               const GraphicsPipeline& pass, const void* push, const std::uint32_t* indices, std::uint32_t vertices);
 
 }  // namespace quadgraph::cpu

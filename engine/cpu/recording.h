@@ -2,13 +2,10 @@
 #pragma once
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cstring>
-#include <exception>
 #include <functional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "engine/cpu/objects.h"
@@ -37,7 +34,7 @@ class Recording : public device::Recording {
     const auto* from = static_cast<const std::byte*>(image.memory.get());
     std::byte* to = bytes_of(target);
     const std::uint32_t rows_at_once = std::max(static_cast<std::uint32_t>(copied_at_once / row), 1u);
-    processor_.threads().run(image.options.layers * height, rows_at_once, [&](std::uint32_t begin, std::uint32_t end) {
+    processor_.run(image.options.layers * height, rows_at_once, [&](std::uint32_t begin, std::uint32_t end) {
       for (std::uint32_t k = begin; k < end; ++k) {
         const std::uint64_t y = std::uint64_t{k / height} * image.options.height + k % height;
         std::memcpy(to + k * row, from + y * image.options.width * image.texel_bytes(), row);
@@ -59,7 +56,7 @@ class Recording : public device::Recording {
   void dispatch(const device::Pipeline& pass, const void* push, std::uint32_t groups) override {
     const auto& pipeline = static_cast<const ComputePipeline&>(pass);
     const std::uint32_t part = std::max(groups / (parts_of_thread * processor_.threads().threads()), 1u);
-    run(
+    processor_.run(
         groups, part,
         [&](std::uint32_t begin, std::uint32_t end) { pipeline.kernel(push, groups, begin, end, pipeline.variant); },
         [] { PendingSums::of_thread().write(); });
@@ -76,7 +73,7 @@ class Recording : public device::Recording {
             const void* push, const device::Memory* indices, std::uint32_t vertices) override {
     const auto& pipeline = static_cast<const GraphicsPipeline&>(pass);
     const auto* numbers = indices == nullptr ? nullptr : reinterpret_cast<const std::uint32_t*>(bytes_of(*indices));
-    rasterise(processor_.threads(), target, viewport, pipeline, push, numbers, vertices, processor_.draw_memory());
+    rasterise(processor_, target, viewport, pipeline, push, numbers, vertices);
     processor_.heed();
   }
 
@@ -106,34 +103,13 @@ class Recording : public device::Recording {
 
   static std::byte* bytes_of(const device::Memory& memory) { return static_cast<std::byte*>(memory.mapped); }
 
-  // ThreadPool::run, but the caller heeds the device's check between its parts; what that throws leaves out the rest.
-  template <typename Work>
-  void run(std::uint32_t count, std::uint32_t part, const Work& work, const std::function<void()>& last = {}) {
-    const auto caller = std::this_thread::get_id();
-    std::atomic<bool> given_up = false;
-    std::exception_ptr why;
-    const auto run_part = [&](std::uint32_t begin, std::uint32_t end) {
-      if (given_up.load(std::memory_order_relaxed)) return;
-      work(begin, end);
-      if (std::this_thread::get_id() != caller) return;
-      try {
-        processor_.heed();
-      } catch (...) {
-        why = std::current_exception();
-        given_up.store(true, std::memory_order_relaxed);
-      }
-    };
-    processor_.threads().run(count, part, run_part, last);
-    if (why) std::rethrow_exception(why);
-  }
-
   // Calls part(begin, end) for all of `bytes`.
   template <typename Part>
   void share_out(std::uint64_t bytes, const Part& part) {
-    run(static_cast<std::uint32_t>((bytes + copied_at_once - 1) / copied_at_once), 1,
-        [&](std::uint32_t begin, std::uint32_t end) {
-          part(begin * copied_at_once, std::min(end * copied_at_once, bytes));
-        });
+    processor_.run(static_cast<std::uint32_t>((bytes + copied_at_once - 1) / copied_at_once), 1,
+                   [&](std::uint32_t begin, std::uint32_t end) {
+                     part(begin * copied_at_once, std::min(end * copied_at_once, bytes));
+                   });
   }
 
   Processor& processor_;

@@ -6,6 +6,8 @@
 #include <glm/vec4.hpp>
 #include <numeric>
 
+#include "engine/cpu/processor.h"
+
 namespace quadgraph::cpu {
 namespace {
 
@@ -163,12 +165,13 @@ void sort_by_tile(const Frame& frame, Part& part) {
   }
 }
 
-void run_vertices(ThreadPool& threads, const Frame& frame, std::uint32_t count, DrawMemory& memory) {
+void run_vertices(Processor& processor, const Frame& frame, std::uint32_t count) {
+  DrawMemory& memory = processor.draw_memory();
   if (memory.vertices.size() < std::size_t{count} * frame.stride) {
     memory.vertices = std::vector<float>(std::size_t{count} * frame.stride);
   }
   if (memory.corners.size() < count) memory.corners = std::vector<Corner>(count);
-  threads.run(count, vertices_at_once, [&](std::uint32_t begin, std::uint32_t end) {
+  processor.run(count, vertices_at_once, [&](std::uint32_t begin, std::uint32_t end) {
     std::array<std::uint32_t, vertices_at_once> numbers;
     for (std::uint32_t first = begin; first < end; first += vertices_at_once) {
       const std::uint32_t some = std::min(end - first, vertices_at_once);
@@ -208,16 +211,16 @@ void set_up_part(const Frame& frame, const std::uint32_t* indices, std::uint32_t
 
 }  // namespace
 
-void set_up(ThreadPool& threads, const Frame& frame, const std::uint32_t* indices, std::uint32_t vertices,
-            DrawMemory& memory) {
+void set_up(Processor& processor, const Frame& frame, const std::uint32_t* indices, std::uint32_t vertices) {
+  DrawMemory& memory = processor.draw_memory();
   const std::uint32_t triangles = vertices / 3;
   memory.part_count = (triangles + triangles_at_once - 1) / triangles_at_once;
   if (memory.parts.size() < memory.part_count) memory.parts.resize(memory.part_count);
   if (triangles == 0) return;
   const auto greater = [](std::uint32_t a, std::uint32_t b) { return std::max(a, b); };
   const std::uint32_t count = indices == nullptr ? vertices : std::reduce(indices, indices + vertices, 0u, greater) + 1;
-  run_vertices(threads, frame, count, memory);
-  threads.run(memory.part_count, 1, [&](std::uint32_t begin, std::uint32_t end) {
+  run_vertices(processor, frame, count);
+  processor.run(memory.part_count, 1, [&](std::uint32_t begin, std::uint32_t end) {
     for (std::uint32_t p = begin; p < end; ++p) {
       const std::uint32_t last = std::min((p + 1) * triangles_at_once, triangles);
       set_up_part(frame, indices, p * triangles_at_once, last, memory, memory.parts[p]);

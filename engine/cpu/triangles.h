@@ -7,10 +7,11 @@
 #include <vector>
 
 #include "engine/cpu/objects.h"
-#include "engine/cpu/thread_pool.h"
 #include "engine/device/device.h"
 
 namespace quadgraph::cpu {
+
+class Processor;
 
 constexpr std::uint32_t tile_side = 64;       // pixels
 constexpr std::uint32_t position_floats = 4;  // before a vertex's own values
@@ -61,8 +62,7 @@ struct DrawMemory {
   std::uint32_t part_count = 0;  // of this draw
 };
 
-// Fills `memory` with the triangles of a draw.
-void set_up(ThreadPool& threads, const Frame& frame, const std::uint32_t* indices, std::uint32_t vertices,
-            DrawMemory& memory);
+// Fills the memory of the processor with the triangles of a draw.
+void set_up(Processor& processor, const Frame& frame, const std::uint32_t* indices, std::uint32_t vertices);
 
 }  // namespace quadgraph::cpu

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/base/listener.h"
 #include "engine/file/graph.h"
 
 namespace quadgraph {
@@ -19,6 +20,6 @@ struct FaceTree {
 };
 
 // Halves at the median along the longest side, down to at most four faces.
-FaceTree face_tree(const Level& level);
+FaceTree face_tree(const Level& level, const Listener& listener = {});
 
 }  // namespace quadgraph

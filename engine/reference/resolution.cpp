@@ -183,9 +183,10 @@ std::string mesh_warning(const Resolution& resolution) {
          " decay lengths of the light deep: where it does not fall it is not resolved; a file with more vertices would";
 }
 
-double inside_edge(const Level& level) {
+double inside_edge(const Level& level, const Listener& listener) {
   double volume = 0, squares = 0;
   for (std::size_t t = 0; t < level.tets.size(); ++t) {
+    heed(listener, t);
     const glm::uvec4& links = level.links[t];
     if (std::max({links.x, links.y, links.z, links.w}) >= level.tets.size()) continue;
     const double own = tet_volume(level, level.tets[t]);

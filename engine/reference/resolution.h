@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/listener.h"
 #include "engine/base/solve_options.h"
 #include "engine/file/graph.h"
 #include "engine/optics/model.h"
@@ -45,7 +46,7 @@ Resolution resolution_of(std::span<const SurfaceSample> samples, std::span<const
 
 // Edges of the tets of a level that are not at its surface, mm: root of the mean square by volume, each that of the
 // regular tet of its volume; 0 where all are at the surface.
-double inside_edge(const Level& level);
+double inside_edge(const Level& level, const Listener& listener = {});
 
 // What is to be said, in words, beside the error estimate: of elements that do not resolve the light, at the surface
 // and inside (`edge` as inside_edge, in light that falls as in the samples' mean), and of a model where it is not near

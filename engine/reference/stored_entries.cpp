@@ -36,10 +36,12 @@ struct VertexShape {
   double conduction = 0;  // sum over the edges of elements of size times length squared, mm^3
 };
 
-std::vector<VertexShape> vertex_shapes(const Level& level) {
+std::vector<VertexShape> vertex_shapes(const Level& level, const Listener& listener) {
   constexpr std::array<std::array<int, 2>, 6> edges = {{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
   std::vector<VertexShape> shapes(level.vertices.size());
-  for (const glm::uvec4& tet : level.tets) {
+  for (std::size_t t = 0; t < level.tets.size(); ++t) {
+    heed(listener, t);
+    const glm::uvec4& tet = level.tets[t];
     std::array<glm::dvec3, 4> p;
     for (int k = 0; k < 4; ++k) p[static_cast<std::size_t>(k)] = glm::dvec3(level.vertices[tet[k]]);
     const glm::dvec3 e1 = p[1] - p[0], e2 = p[2] - p[0], e3 = p[3] - p[0];
@@ -63,11 +65,11 @@ std::vector<VertexShape> vertex_shapes(const Level& level) {
 
 }  // namespace
 
-EntryFormat format_of(const Level& level, Method method) {
+EntryFormat format_of(const Level& level, Method method, const Listener& listener) {
   if (method != Method::fem || level.vertices.size() > gpu::PACKED_COLUMNS) return EntryFormat::plain;
   std::size_t bad = 0;
   double conduction = 0, volume = 0;
-  for (const VertexShape& shape : vertex_shapes(level)) {
+  for (const VertexShape& shape : vertex_shapes(level, listener)) {
     if (!(shape.largest <= largest_entry * std::cbrt(shape.volume))) return EntryFormat::plain;
     if (!(shape.conduction <= largest_conduction * shape.volume)) ++bad;
     conduction += shape.conduction;

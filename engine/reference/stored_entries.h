@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/base/listener.h"
 #include "engine/base/solve_options.h"
 #include "engine/reference/block.h"
 #include "engine/reference/operator.h"
@@ -23,7 +24,7 @@ enum class EntryFormat : std::uint32_t { packed, plain };
 // conduction of all elements together, over their volume, is above 25: cubes cut into six have 10, baked meshes 15 to
 // 22, where the exitance changes by less than 1e-4, slivers of 1 degree all through 30 (2e-4), of 0.1 degrees 160
 // (3e-3).
-EntryFormat format_of(const Level& level, Method method);
+EntryFormat format_of(const Level& level, Method method, const Listener& listener = {});
 
 // 32-bit words of an entry.
 constexpr std::uint32_t stored_words(Model model, EntryFormat format) {

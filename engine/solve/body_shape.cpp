@@ -4,9 +4,9 @@
 
 namespace quadgraph {
 
-BodyShape::BodyShape(const QuadGraph& graph) : moved_(graph), deformed_(graph.levels()) {
+BodyShape::BodyShape(const QuadGraph& graph, const Listener& listener) : moved_(graph), deformed_(graph.levels()) {
   sample();
-  for (const Level& level : levels()) edge_shares_.push_back(inside_edge(level) / chord_);
+  for (const Level& level : levels()) edge_shares_.push_back(inside_edge(level, listener) / chord_);
 }
 
 void BodyShape::sample() {

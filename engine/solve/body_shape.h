@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/listener.h"
 #include "engine/deform/moved_levels.h"
 #include "engine/solve/deformed_levels.h"
 
@@ -14,7 +15,7 @@ namespace quadgraph {
 class BodyShape {
  public:
   // `graph` must stay alive.
-  explicit BodyShape(const QuadGraph& graph);
+  BodyShape(const QuadGraph& graph, const Listener& listener);
 
   // The levels as in the file or as set; what deformers do to them is on the device alone.
   const std::vector<Level>& levels() const { return moved_.levels(); }

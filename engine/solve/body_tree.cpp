@@ -7,7 +7,7 @@
 namespace quadgraph {
 
 BodyTree::BodyTree(device::Device& device, const Level& level, const std::string& purpose) : purpose_(purpose) {
-  const FaceTree tree = face_tree(level);
+  const FaceTree tree = face_tree(level, [&] { device.heed(); });
   leaves_ = tree.leaves();
   order_ = device::upload<std::uint32_t>(device, tree.order, purpose + "/faces of the tree");
   leaf_begin_ = device::upload<std::uint32_t>(device, tree.leaf_begin, purpose + "/leaves of the tree");

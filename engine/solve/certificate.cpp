@@ -42,7 +42,7 @@ std::string against(const char* name, const CertifiedPart& part, double stated) 
 }  // namespace
 
 Certifier::Certifier(device::Device& device, const Level& level)
-    : patch_(surface_patches(level)),
+    : patch_(surface_patches(level, [&] { device.heed(); })),
       importance_(device, level.vertex_count() * sizeof(glm::vec3), device::Place::device, "certificate/importance"),
       leaving_(device, walk_batches * level.face_count() * sum_bytes, device::Place::device, "certificate/leaving"),
       sums_(device, (counts_at + 2 * gpu::WALK_SUMS) * sizeof(std::uint32_t), device::Place::device,

@@ -18,9 +18,11 @@ constexpr double large = 0.02;
 }  // namespace
 
 std::vector<glm::vec3> medium_load(const Level& level, std::span<const gpu::Optical> here,
-                                   std::span<const gpu::Optical> there, std::span<const glm::vec3> fluence) {
+                                   std::span<const gpu::Optical> there, std::span<const glm::vec3> fluence,
+                                   const Listener& listener) {
   std::vector<glm::dvec3> load(level.vertex_count(), glm::dvec3(0));
   for (std::size_t t = 0; t < level.tets.size(); ++t) {
+    heed(listener, t);
     if (here[t].sigma_a == there[t].sigma_a && here[t].sigma_s_prime == there[t].sigma_s_prime) continue;
     const ElementCoefficients own = element_of(here[t]), other = element_of(there[t]);
     const ElementCoefficients lacks{.kappa = own.kappa - other.kappa, .absorption = own.absorption - other.absorption};

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/base/listener.h"
 #include "engine/solve/perturbation.h"
 
 namespace quadgraph {
@@ -15,7 +16,8 @@ namespace quadgraph {
 // b of the diffusion of the correction, per vertex of `level` in its present shape: of what the operator with
 // coefficients `there` lacks of that with `here`, one per tet each, at a fluence per vertex.
 std::vector<glm::vec3> medium_load(const Level& level, std::span<const gpu::Optical> here,
-                                   std::span<const gpu::Optical> there, std::span<const glm::vec3> fluence);
+                                   std::span<const gpu::Optical> there, std::span<const glm::vec3> fluence,
+                                   const Listener& listener = {});
 
 // Relative RMS of the means over patches of the surface, by part, of such a load. Throws SolverError as LevelSolver.
 ErrorEstimate medium_error(Perturbation& perturbation, const PerturbedSolution& solution,

@@ -21,7 +21,7 @@ void Operators::create(device::Device& device, std::span<const Level> levels, co
     std::vector<OfLevel> of_key(count);
     for (std::uint32_t i = 0; i < count; ++i) {
       const bool plain = plain_on_device_ || plain_.contains(key);
-      const EntryFormat format = plain ? EntryFormat::plain : format_of(levels[i], key.method);
+      const EntryFormat format = plain ? EntryFormat::plain : format_of(levels[i], key.method, [&] { device.heed(); });
       of_key[i].op.emplace(device, levels[i], elements(i), i, key.method, key.model, format);
       if (i + 1 < count) of_key[i].transfer.emplace(device, levels[i], levels[i + 1], i, key.method);
     }

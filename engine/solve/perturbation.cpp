@@ -21,7 +21,8 @@ constexpr std::uint32_t most_changed_cycles = 6, most_changed_steps = 500;
 
 }  // namespace
 
-Perturbation::Perturbation(device::Device& device, const Level& level) : patch_(surface_patches(level)) {
+Perturbation::Perturbation(device::Device& device, const Level& level)
+    : patch_(surface_patches(level, [&] { device.heed(); })) {
   const auto room = [&](std::uint64_t count, std::uint64_t bytes, const char* name) {
     return device::Buffer(device, count * bytes, device::Place::device, "perturbation/" + std::string(name));
   };
@@ -87,9 +88,11 @@ ErrorEstimate Perturbation::relative(const PerturbedSolution& solution, std::spa
     glm::dvec3 exitance{0}, a{0}, b{0};
   };
   const SurfaceField& field = solution.field;
+  const Listener listener = [&] { solution.work.recorder.device().heed(); };
   const auto error_of = [&](const auto& taken) {
     std::vector<Patch> sums(most_patches);
     for (std::size_t f = 0; f < field.area.size(); ++f) {
+      heed(listener, f);
       if (!taken(f)) continue;
       const double area = field.area[f];
       Patch& patch = sums[patch_[f]];
@@ -110,7 +113,7 @@ ErrorEstimate Perturbation::relative(const PerturbedSolution& solution, std::spa
     if (!(size > 0)) return 0.0;
     return std::sqrt(std::max(product, std::sqrt(square_a * square_b / count)) / size);
   };
-  const SurfaceParts parts = surface_parts(field, solution.unlit);
+  const SurfaceParts parts = surface_parts(field, solution.unlit, listener);
   return {error_of([](std::size_t) { return true; }), error_of([&](std::size_t f) { return parts.unlit[f]; }),
           error_of([&](std::size_t f) { return parts.dimmest[f]; })};
 }

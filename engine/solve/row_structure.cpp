@@ -34,12 +34,16 @@ struct Lists {
 
 // for_each(add) calls add(list, element) for everything, in order; twice.
 template <typename ForEach>
-Lists gather(std::size_t count, const ForEach& for_each) {
+Lists gather(std::size_t count, const Listener& listener, const ForEach& for_each) {
   Lists lists;
   lists.offset.assign(count + 1, 0);
   for_each([&](std::uint32_t list, std::uint32_t) { ++lists.offset[list + 1]; });
-  for (std::size_t i = 0; i < count; ++i) lists.offset[i + 1] += lists.offset[i];
+  for (std::size_t i = 0; i < count; ++i) {
+    heed(listener, i);
+    lists.offset[i + 1] += lists.offset[i];
+  }
   lists.element.resize(lists.offset.back());
+  heed(listener, 0);
   std::vector<std::uint32_t> next(lists.offset.begin(), lists.offset.end() - 1);
   for_each([&](std::uint32_t list, std::uint32_t element) { lists.element[next[list]++] = element; });
   return lists;
@@ -48,9 +52,10 @@ Lists gather(std::size_t count, const ForEach& for_each) {
 // Edges by their lower end, then by the other.
 class Edges {
  public:
-  explicit Edges(const Neighbours& rows) : rows_(rows) {
+  Edges(const Neighbours& rows, const Listener& listener) : rows_(rows) {
     first_.push_back(0);
     for (std::uint32_t i = 0; i + 1 < rows.offset.size(); ++i) {
+      heed(listener, i);
       below_.push_back(place_of(rows, i, i));
       first_.push_back(first_.back() + rows.offset[i + 1] - rows.offset[i] - below_.back());
     }
@@ -91,7 +96,7 @@ std::vector<std::uint32_t> edges_of_tets(const Level& level, const Edges& edges,
 // What lies around every edge: tets, then open faces.
 Lists rings_of(const Level& level, const Edges& edges, const Listener& listener) {
   const std::vector<std::uint32_t> of_tets = edges_of_tets(level, edges, listener);
-  return gather(edges.count(), [&](const auto& add) {
+  return gather(edges.count(), listener, [&](const auto& add) {
     for (std::uint32_t t = 0; t < level.tet_count(); ++t) {
       heed(listener, t);
       for (std::uint32_t e = 0; e < tet_edges.size(); ++e) add(of_tets[tet_edges.size() * t + e], 8 * t + e);
@@ -153,7 +158,7 @@ void add_faces(const Level& level, const Edges& edges, std::vector<EdgeShape>& o
 }  // namespace
 
 Neighbours vertex_neighbours(const Level& level, const Listener& listener) {
-  Lists around = gather(level.vertices.size(), [&](const auto& add) {
+  Lists around = gather(level.vertices.size(), listener, [&](const auto& add) {
     for (std::uint32_t t = 0; t < level.tet_count(); ++t) {
       heed(listener, t);
       const glm::uvec4& tet = level.tets[t];
@@ -222,7 +227,7 @@ SlicedColumns grid_columns(const Level& level, std::uint32_t slice_rows) {
 }
 
 FemShape fem_shape(const Level& level, const Neighbours& rows, const SlicedColumns& columns, const Listener& listener) {
-  const Edges edges(rows);
+  const Edges edges(rows, listener);
   std::vector<EdgeShape> of_edge(edges.count());
   FemShape shape;
   shape.row.assign(level.vertices.size(), glm::vec2(0));
@@ -244,8 +249,9 @@ FemShape fem_shape(const Level& level, const Neighbours& rows, const SlicedColum
 }
 
 FemRings fem_rings(const Level& level, const Neighbours& rows, const SlicedColumns& columns, const Listener& listener) {
-  const Edges edges(rows);
+  const Edges edges(rows, listener);
   FemRings structure;
+  structure.edge_entry.reserve(edges.count());
   edges.for_each([&](std::uint32_t a, std::uint32_t b) {
     heed(listener, structure.edge_entry.size());
     structure.edge_entry.emplace_back(entry_of(rows, columns, a, b), entry_of(rows, columns, b, a));
@@ -257,7 +263,7 @@ FemRings fem_rings(const Level& level, const Neighbours& rows, const SlicedColum
 }
 
 TetIncidence tet_incidence(const Level& level, const Listener& listener) {
-  Lists tets = gather(level.vertices.size(), [&](const auto& add) {
+  Lists tets = gather(level.vertices.size(), listener, [&](const auto& add) {
     for (std::uint32_t t = 0; t < level.tet_count(); ++t) {
       heed(listener, t);
       for (int k = 0; k < 4; ++k) add(level.tets[t][k], t);
@@ -267,7 +273,7 @@ TetIncidence tet_incidence(const Level& level, const Listener& listener) {
 }
 
 FaceIncidence face_incidence(const Level& level) {
-  Lists faces = gather(level.surface_vertex_count, [&](const auto& add) {
+  Lists faces = gather(level.surface_vertex_count, {}, [&](const auto& add) {
     for (std::uint32_t f = 0; f < level.face_count(); ++f) {
       for (int k = 0; k < 3 && !level.reflecting(f); ++k) add(level.faces[f][k], f);
     }

@@ -176,7 +176,8 @@ void Simulation::state_medium_error(const SolveOptions& options, SolveReport& re
   const auto here = device::download<gpu::Optical>(self.device, self.levels[0].optical);
   const auto fluence = device::download<glm::vec3>(self.device, self.correction->fluence());
   const Level& level = present_level();
-  const std::vector<glm::vec3> load = medium_load(level, here, std::span(there).first(level.tet_count()), fluence);
+  const std::vector<glm::vec3> load =
+      medium_load(level, here, std::span(there).first(level.tet_count()), fluence, [&] { self.device.heed(); });
   self.elsewhere = device::upload<gpu::Optical>(self.device, there, "material/elsewhere");
   perturb(options, report, [&](const PerturbedSolution& solution) {
     add_medium_error(report, medium_error(*self.perturbation, solution, load));

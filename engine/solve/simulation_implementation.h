@@ -71,7 +71,7 @@ struct Simulation::Implementation {
 
   Implementation(device::Device& context_in, const QuadGraph& graph_in)
       : device(context_in),
-        shape(graph_in),
+        shape(graph_in, [&] { device.heed(); }),
         refractions(context_in, static_cast<std::uint32_t>(std::max<std::size_t>(graph_in.bodies().size(), 1))),
         levels(upload_levels(context_in, graph_in.levels(), refractions)),
         work(context_in, largest_dispatch()),

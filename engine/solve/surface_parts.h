@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/base/listener.h"
 #include "engine/file/graph.h"
 #include "engine/reference/solution.h"
 
@@ -13,7 +14,7 @@ namespace quadgraph {
 inline constexpr std::uint32_t most_patches = 256;
 
 // The patch of each outside face, below most_patches: faces that lie together.
-std::vector<std::uint32_t> surface_patches(const Level& level);
+std::vector<std::uint32_t> surface_patches(const Level& level, const Listener& listener = {});
 
 // Which faces are of the parts of ErrorEstimate.
 struct SurfaceParts {
@@ -21,6 +22,6 @@ struct SurfaceParts {
 };
 
 // Of the field, position and normal are not looked at. unlit: W/mm^2, as of gpu::Scale.
-SurfaceParts surface_parts(const SurfaceField& field, float unlit);
+SurfaceParts surface_parts(const SurfaceField& field, float unlit, const Listener& listener = {});
 
 }  // namespace quadgraph

@@ -59,7 +59,7 @@ TransportSamples::TransportSamples(device::Device& device, const Level& level) {
   drawn_ = room(sizeof(std::uint32_t), "points drawn");
   load_ = room(2 * gpu::TRANSPORT_HALVES * level.vertex_count() * sum_bytes, "load");
   gathered_ = room(gpu::TRANSPORT_HALVES * level.face_count() * vec3_bytes, "gathered exitance");
-  const TetIncidence tets = quadgraph::tet_incidence(level);
+  const TetIncidence tets = quadgraph::tet_incidence(level, [&] { device.heed(); });
   tet_offset_ = device::upload<std::uint32_t>(device, tets.offset, "transport/tet_offset");
   tet_incidence_ = device::upload<std::uint32_t>(device, tets.tet, "transport/tet_incidence");
   mass_ = room(vertices, "mass");

@@ -26,8 +26,11 @@ Neighbours neighbours_of(const Level& level, const Listener& listener) {
       sides.push_back({low, high, f, k});
     }
   }
-  std::sort(sides.begin(), sides.end(),
-            [](const Side& a, const Side& b) { return std::pair(a.low, a.high) < std::pair(b.low, b.high); });
+  std::size_t compared = 0;
+  std::sort(sides.begin(), sides.end(), [&](const Side& a, const Side& b) {
+    heed(listener, compared++);
+    return std::pair(a.low, a.high) < std::pair(b.low, b.high);
+  });
   Neighbours neighbours(level.faces.size(), {none, none, none});
   for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
     heed(listener, i);

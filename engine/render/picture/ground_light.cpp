@@ -26,7 +26,8 @@ GroundLight::GroundLight(device::Device& device, const Level& level)
       face_count_(level.face_count()),
       patch_faces_(std::max(quotient_up(face_count_, gpu::GROUND_PATCHES), 1u)),
       patch_count_(quotient_up(face_count_, patch_faces_)),
-      order_(device::upload<std::uint32_t>(device, face_tree(level).order, "picture/ground order")),
+      order_(device::upload<std::uint32_t>(device, face_tree(level, [&] { device.heed(); }).order,
+                                           "picture/ground order")),
       patches_(device, sizeof(gpu::GroundPatch) * patch_count_, device::Place::device, "picture/ground patches"),
       light_(device, sizeof(glm::vec4) * light_texels, device::Place::device, "picture/ground light") {}
 

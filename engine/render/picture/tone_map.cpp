@@ -39,6 +39,8 @@ float srgb_encode(float linear) {
 
 Brightness exposure_target(ToneCurve curve) {
   switch (curve) {
+    case ToneCurve::agx_punchy:
+      return {1.2353, 1.2353};
     case ToneCurve::agx:
       return {0.8415, 0.9};
     case ToneCurve::linear:

@@ -17,14 +17,20 @@ namespace quadgraph {
 struct Picture;
 
 // By the numbers that shaders/display/tone_curve.h has.
-enum class ToneCurve : std::uint32_t { aces = TONE_ACES, agx = TONE_AGX, linear = TONE_LINEAR };
+enum class ToneCurve : std::uint32_t {
+  agx_punchy = TONE_AGX_PUNCHY,
+  agx = TONE_AGX,
+  aces = TONE_ACES,
+  linear = TONE_LINEAR
+};
 
 template <>
 struct Names<ToneCurve> {
   static constexpr std::string_view what = "tone";
   static constexpr auto values = std::to_array<Named<ToneCurve>>(
-      {{ToneCurve::aces, "aces", "filmic, each channel by itself (Narkowicz 2015)"},
+      {{ToneCurve::agx_punchy, "agx-punchy", "AgX with its look Punchy, darker and of stronger colours"},
        {ToneCurve::agx, "agx", "filmic, what is bright loses its colour (AgX, Sobotka 2022)"},
+       {ToneCurve::aces, "aces", "filmic, each channel by itself (Narkowicz 2015)"},
        {ToneCurve::linear, "linear", "as it is, clipped where it is brighter than the screen"}});
 };
 
@@ -34,7 +40,7 @@ struct ToneOptions {
   // Linear display colour in [0, 1] behind the object at the top and at the bottom of the picture.
   glm::vec3 background_top{0.008f, 0.0085f, 0.01f};
   glm::vec3 background_bottom{0.05f, 0.052f, 0.057f};
-  ToneCurve curve = ToneCurve::aces;
+  ToneCurve curve = ToneCurve::agx_punchy;
   float white_balance = daylight_kelvin;  // colour temperature of what is shown white, in kelvin_range
   bool transparent = false;               // in PNG nothing is behind the object, neither that nor the surroundings
 

@@ -61,7 +61,7 @@ TEST_CASE("the screen shows what a PNG holds, within one code") {
   Picture picture = sample_picture(61, 37);
   ToneMapper mapper(checked.context);
   for (const ToneOptions& options :
-       {ToneOptions{}, ToneOptions{.exposure_stops = 3.5f}, ToneOptions{.curve = ToneCurve::agx},
+       {ToneOptions{}, ToneOptions{.exposure_stops = 3.5f}, ToneOptions{.curve = ToneCurve::aces},
         ToneOptions{.curve = ToneCurve::linear, .white_balance = 3000},
         ToneOptions{.exposure_stops = 2.0f, .curve = ToneCurve::agx, .white_balance = 9000},
         ToneOptions{.background_top = glm::vec3(1), .background_bottom = glm::vec3(0.2f)}, ToneOptions{}}) {
@@ -102,7 +102,10 @@ TEST_CASE("a picture in motion is stretched over the screen: what is even stays 
     }
   }
   ToneMapper mapper(checked.context);
-  const ToneOptions black{.exposure_stops = 0.0f, .background_top = glm::vec3(0), .background_bottom = glm::vec3(0)};
+  const ToneOptions black{.exposure_stops = 0.0f,
+                          .background_top = glm::vec3(0),
+                          .background_bottom = glm::vec3(0),
+                          .curve = ToneCurve::aces};
   const auto shown = device::download<std::uint32_t>(
       checked.context, mapper.run(on_device(checked.context, picture), black, 0, {32, 16}));
   const float lit = 255 * srgb_encode(gpu::aces_curve(0.4f));

@@ -60,7 +60,7 @@ def test_a_view_without_a_curve_shows_what_the_linear_tone_shows(picture, member
     assert np.abs(shown.astype(int) - expected.astype(int)).max() <= 1  # of 255: one is dithered
 
 
-# AgX as a config has it: a matrix, 16.5 stops, a curve from a file, and the matrix back.
+# AgX as a config has it: a matrix, 16.5 stops, a curve from a file, a look, and the matrix back.
 AGX = """ocio_profile_version: 2
 roles: {default: lin_srgb}
 displays:
@@ -75,6 +75,7 @@ colorspaces:
         - !<MatrixTransform> {matrix: INSET}
         - !<AllocationTransform> {allocation: lg2, vars: [-12.47393, 4.026069]}
         - !<FileTransform> {src: curve.spi1d, interpolation: linear}
+        - !<CDLTransform> {power: [POWER, POWER, POWER], sat: SATURATION, style: noclamp}
         - !<MatrixTransform> {matrix: OUTSET}
 """
 INSET = [
@@ -96,8 +97,9 @@ def sigmoid(x: np.ndarray) -> np.ndarray:
     return bent
 
 
+@pytest.mark.parametrize(("tone", "power", "saturation"), [("agx", 1, 1), ("agx-punchy", 1.35, 1.4)])
 @pytest.mark.parametrize("members", [{}, {"exposure": 3.5}, {"exposure": -3.0, "background": "studio"}])
-def test_agx_is_what_opencolorio_makes_of_its_parts(picture, tmp_path, members):
+def test_agx_is_what_opencolorio_makes_of_its_parts(picture, tmp_path, members, tone, power, saturation):
     curve = "\n".join(f"{value:.9f}" for value in sigmoid(np.linspace(0, 1, 8192)))
     head = "Version 1\nFrom 0 1\nLength 8192\nComponents 1\n"
     (tmp_path / "curve.spi1d").write_text(f"{head}{{\n{curve}\n}}\n")
@@ -108,9 +110,10 @@ def test_agx_is_what_opencolorio_makes_of_its_parts(picture, tmp_path, members):
         return str(whole.ravel().tolist())
 
     text = AGX.replace("INSET", by_rows(np.array(INSET))).replace("OUTSET", by_rows(np.linalg.inv(INSET)))
+    text = text.replace("POWER", str(power)).replace("SATURATION", str(saturation))
     (tmp_path / "agx.ocio").write_text(text)
     shown = ColourConfig(tmp_path / "agx.ocio").shown(picture, how(**members))
-    expected = picture.srgb(how(tone="agx", **members))
+    expected = picture.srgb(how(tone=tone, **members))
     assert expected.max() > 40
     assert np.abs(shown.astype(int) - expected.astype(int)).max() <= 1  # of 255
 

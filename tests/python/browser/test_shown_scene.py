@@ -123,14 +123,14 @@ def test_camera_and_size_are_no_steps_and_stay(shown, stage):
     shown.move(stage, "orbit", 30, 5, 0)
     shown.set("/picture/width", 200)
     shown.undo()
-    assert shown.document["picture"]["tone"] == "aces"
+    assert shown.document["picture"]["tone"] == "agx-punchy"
     assert shown.document["picture"]["width"] == 200
     assert shown.document["camera"]["elevation"] == pytest.approx(5)
     shown.restore()
     assert shown.document["camera"]["elevation"] == pytest.approx(10)
     assert shown.document["picture"]["width"] == 200
     shown.undo()
-    assert shown.document["picture"]["tone"] == "aces"
+    assert shown.document["picture"]["tone"] == "agx-punchy"
 
 
 def test_hands_do_what_they_do_in_the_window(shown, stage):

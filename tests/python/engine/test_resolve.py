@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import pytest
 from PIL import Image
@@ -51,9 +53,9 @@ def test_a_lens_blurs_what_it_is_not_in_focus_on(engine):
 
 
 def test_every_curve_shows_it_and_files_say_which(picture, tmp_path):
-    shown = {tone: picture.srgb(tone=tone).astype(int) for tone in ("aces", "agx", "linear")}
-    assert np.array_equal(shown["aces"], picture.srgb())
-    for one, other in (("aces", "agx"), ("aces", "linear"), ("agx", "linear")):
+    shown = {tone: picture.srgb(tone=tone, exposure=1).astype(int) for tone in ("agx-punchy", "agx", "aces", "linear")}
+    assert np.array_equal(shown["agx-punchy"], picture.srgb(exposure=1))
+    for one, other in itertools.combinations(shown, 2):
         assert np.abs(shown[one] - shown[other]).max() > 10
     for suffix in ("png", "jpg"):
         picture.save(tmp_path / f"a.{suffix}", tone="agx", white_balance=5000)
@@ -72,7 +74,7 @@ def test_the_balance_of_white_is_cooler_below_and_warmer_above(picture):
 
 def test_what_is_not_allowed_is_refused(picture):
     for tone, said in (
-        ({"tone": "film"}, "allowed are aces, agx, linear"),
+        ({"tone": "film"}, "allowed are agx-punchy, agx, aces, linear"),
         ({"white_balance": 900}, "white balance: found 900, expected"),
         ({"contrast": 2}, "contrast: not known; background, exposure, tone, white_balance are"),
     ):
