@@ -30,8 +30,8 @@ constexpr std::uint32_t most_sweeps = 4;
 
 // Directions per point, and rays per face and half; draws of points at most, or more while all of them cross so many
 // segments for each tet.
-constexpr std::uint32_t rest_directions = 16, rest_rays = 8, motion_directions = 8, motion_rays = 1;
-constexpr double most_draws = 16, segments_per_tet = 400;
+constexpr std::uint32_t rest_directions = 12, rest_rays = 8, motion_directions = 8, motion_rays = 1;
+constexpr double most_draws = 16, segments_per_tet = 300;
 
 // Noise that the solves of a frame in motion may have. Its points are halved, down to a share, where half as many would
 // do, with room for what the memory of frames hides: of a thin body the rays are long, and few points tell enough.

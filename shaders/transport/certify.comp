@@ -71,9 +71,9 @@ void divide(inout Ray ray, float share) {
 // Ends a walk that counts for little by chance, or divides one that counts for much, without bias.
 void weigh(inout Ray ray, uint channel) {
   float worth = importance_here(ray.at, channel), share = worth * ray.power[channel] / push.unit[channel];
-  float least = push.guided == 0u ? TRANSPORT_ROULETTE : GUIDED_LEAST;
+  float least = push.guided == 0u ? PLAIN_LEAST : GUIDED_LEAST;
   if (share < least) {
-    float kept = push.guided == 0u ? TRANSPORT_ROULETTE : 1.0;
+    float kept = push.guided == 0u ? PLAIN_LEAST : 1.0;
     ray.power[channel] = kept * uniform_number(state) < share ? kept * push.unit[channel] / worth : 0.0;
   } else if (push.guided == 1u && share >= GUIDED_MOST) {
     divide(ray, share);

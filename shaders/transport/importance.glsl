@@ -10,6 +10,9 @@
 // What a direction is worth at least, as a share of its place.
 const float LEAST_WORTH = 0.25;
 
+// A walk without importance that counts with less of the unit goes on by chance, with this much.
+const float PLAIN_LEAST = 0.05;
+
 // Times its importance, a walk counts with no less and no more than this of the unit: it ends by chance, or goes on as
 // several.
 const float GUIDED_LEAST = 0.3;

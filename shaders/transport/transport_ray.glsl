@@ -32,6 +32,8 @@ struct Way {
   bool found;  // false where the ray ends in it
   uint place;  // of the corner opposite
   uint crossing;
+  vec3 ahead;  // what would come from beyond if all were there as it is here
+  vec3 ahead_before;
 };
 
 bool sees_before() {
@@ -93,8 +95,8 @@ vec3 at_place(TetSource light, vec4 l) {
 }
 
 // Adds the source between two places of a tet `path` apart, attenuated on the way to the ray's start: exact where the
-// source is linear.
-void add_source(vec3 from, vec3 to, vec3 sigma_t, float path, inout vec3 sum, inout vec3 left) {
+// source is linear. Returns what a ray without end brings where the source is as at the second place.
+vec3 add_source(vec3 from, vec3 to, vec3 sigma_t, float path, inout vec3 sum, inout vec3 left) {
   vec3 tau = max(sigma_t * path, vec3(1e-20)), t = min(tau, vec3(0.1));
   vec3 passes = exp(-tau), inverse = 1.0 / tau;
   bvec3 small = lessThan(tau, vec3(0.1));
@@ -105,6 +107,7 @@ void add_source(vec3 from, vec3 to, vec3 sigma_t, float path, inout vec3 sum, in
                   1.0 / 2.0 - t * (1.0 / 3.0 - t * (1.0 / 8.0 - t * (1.0 / 30.0))), small);
   sum += path * left * (from * all + (to - from) * late);
   left *= passes;
+  return path * inverse * to;
 }
 
 // Adds the source along the ray in its tet, attenuated on the way to the ray's start, for the field that is seen and the
@@ -117,13 +120,15 @@ Way across_tet(inout Ray ray, inout vec3 sum, inout vec3 before) {
   uint tet = ray.at.tet;
   vec4 start = ray.at.l, end = exit_point(ray.at, exit);
   TetSource light = light_of(tet, -ray.direction);
-  add_source(at_place(light, start), at_place(light, end), extinction(optical_in(tet)), path, sum, ray.left);
+  vec3 ahead =
+      add_source(at_place(light, start), at_place(light, end), extinction(optical_in(tet)), path, sum, ray.left);
+  vec3 ahead_before = vec3(0);
   if (sees_before()) {
-    add_source(source_before_at(tet, start), source_before_at(tet, end), extinction(optical_before(tet)), path,
-               before, ray.left_before);
+    ahead_before = add_source(source_before_at(tet, start), source_before_at(tet, end),
+                              extinction(optical_before(tet)), path, before, ray.left_before);
   }
   ray.at.l = end;
-  return Way(exit.found, exit.place, crossing_at(tet, exit.place));
+  return Way(exit.found, exit.place, crossing_at(tet, exit.place), ahead, ahead_before);
 }
 
 // At the surface from inside: on, mirrored or through the air. False where the ray ends.
@@ -153,33 +158,37 @@ bool goes_past(uint face, inout Ray ray) {
   return true;
 }
 
-// Whether a ray is kept; by chance, without bias, where little of it is left.
-bool survives(inout Ray ray) {
+// Whether a ray is kept; by chance, without bias, where little of it is left. What is then added for sure is what the
+// source here lets expect of the rest, so that chance has only the difference to that.
+bool survives(inout Ray ray, Way way, inout vec3 sum, inout vec3 before) {
   vec3 left = max(ray.left, ray.left_before);
   if (any(greaterThanEqual(left, vec3(TRANSPORT_ROULETTE)))) return true;
-  float most = largest(left);
-  if (uniform_number(ray.state) * TRANSPORT_ROULETTE >= most) return false;
-  ray.left *= TRANSPORT_ROULETTE / most;
-  ray.left_before *= TRANSPORT_ROULETTE / most;
-  return true;
+  float most = largest(left), grows = TRANSPORT_ROULETTE / most;
+  bool kept = uniform_number(ray.state) * TRANSPORT_ROULETTE < most;
+  float share = kept ? 1.0 - grows : 1.0;
+  sum += share * ray.left * way.ahead;
+  before += share * ray.left_before * way.ahead_before;
+  ray.left *= grows;
+  ray.left_before *= grows;
+  return kept;
 }
 
 // Into what lies across. False where the ray ends.
-bool goes_on(inout Ray ray, Way way) {
+bool goes_on(inout Ray ray, Way way, inout vec3 sum, inout vec3 before) {
   if (!way.found || ++ray.steps == MAX_WALK_STEPS) return false;
   uint across = way.crossing >> CROSSING_BITS;
   if (across < BODY.tet_count) {
     if (bends(ray.at.tet, across) &&
         !goes_through(ray.at.tet, way.place, across, uniform_number(ray.state), ray.direction)) {
       bar(ray.at, way.place);
-      return survives(ray);
+      return survives(ray, way, sum, before);
     }
     enter(ray.at, way.place, way.crossing);
   } else {
     bar(ray.at, way.place);
     if (!goes_past(across - BODY.tet_count, ray)) return false;
   }
-  return survives(ray);
+  return survives(ray, way, sum, before);
 }
 
 // The source along the ray from its point, attenuated on the way to that point: 4 pi times the radiance there, against
@@ -189,7 +198,7 @@ vec3 arriving(Ray ray, out vec3 before) {
   before = vec3(0);
   for (;;) {
     Way way = across_tet(ray, sum, before);
-    if (!goes_on(ray, way)) return sum;
+    if (!goes_on(ray, way, sum, before)) return sum;
   }
 }
 

@@ -23,7 +23,7 @@ const float TRANSPORT_FLOOR = 0.03f;
 const float TRANSPORT_DENSER = 16.0f;
 
 // A ray that keeps less than this goes on by chance, with this weight.
-const float TRANSPORT_ROULETTE = 0.05f;
+const float TRANSPORT_ROULETTE = 0.3f;
 
 // Sums of the walk of the light (transport_walk.comp).
 const uint TRANSPORT_WALK_SUMS = 4u;

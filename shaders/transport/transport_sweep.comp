@@ -39,7 +39,7 @@ vec3 transported(TetPoint at, vec3 turn, uint seed, out vec3 before) {
   while (count > 0u) {
     for (uint j = 0u; j < count; ++j) ways[j] = across_tet(rays[j], sum, before);
     for (uint j = count; j-- > 0u;) {
-      if (goes_on(rays[j], ways[j])) continue;
+      if (goes_on(rays[j], ways[j], sum, before)) continue;
       if (spread.next < push.directions) {
         rays[j] = next_ray(at, seed, spread);
       } else {

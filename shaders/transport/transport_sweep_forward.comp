@@ -52,7 +52,7 @@ Transported transported(TetPoint at, vec3 turn, uint seed) {
   while (count > 0u) {
     for (uint j = 0u; j < count; ++j) ways[j] = across_tet(rays[j], sums[j], unseen);
     for (uint j = count; j-- > 0u;) {
-      if (goes_on(rays[j], ways[j])) continue;
+      if (goes_on(rays[j], ways[j], sums[j], unseen)) continue;
       found.fluence += sums[j];
       found.flux += outerProduct(sums[j], -back[j]);
       if (spread.next < push.directions) {
