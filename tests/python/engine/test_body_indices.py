@@ -80,7 +80,7 @@ WAYS = {
     "finite volumes": {"correction": False, "tolerance": 1e-6, "model": "sp3", "method": "quadgraph-fv"},
     "as published": {"correction": False, "tolerance": 1e-6, "method": "quadgraph-fdm", "source": "diffuse"},
     "diffuse source": {"correction": False, "tolerance": 1e-6, "model": "sp3", "source": "diffuse"},
-    "corrected": {"model": "sp3", "sweeps": 2},
+    "corrected": {"model": "sp3", "sweeps": 2, "sweep_points": 200_000},  # else more are drawn for one than for another
 }
 
 

@@ -305,7 +305,7 @@ def test_a_stroke_of_the_brush_shows_where_it_went_and_can_be_taken_back(open_wi
     """Painted to the right of the middle of a sphere, undone, redone, and written into a scene file."""
     body = write_levels(tmp_path / "ball.qgraph", [icosphere(3, 10), icosphere(2, 10)])
     front = ["--view", "0,0", "--light", "directional:0,0,-1:1"]
-    hand = open_window("--material", "skin1", "--exposure", "1", *front, body=body)
+    hand = open_window("--material", "skin1", "--tone", "aces", "--exposure", "1", *front, body=body)
     before = hand.picture()
     hand.keys("p")
     hand.drag(100, 0)

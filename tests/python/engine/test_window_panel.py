@@ -120,7 +120,7 @@ def test_a_stamp_prints_its_mask_where_the_hand_lets_it_go(open_window, tmp_path
     texels[:16] = 255
     Image.fromarray(texels).save(tmp_path / "upper.png")
     look = ["--view", "0,0", "--radiance", "lambertian", "--light", "directional:0,0,-1:1", "--light", "ambient:.3"]
-    hand = open_window("--material", "skin1", "--exposure", "1", "--no-ground", *look, body=body)
+    hand = open_window("--material", "skin1", "--exposure", "2.6", "--no-ground", *look, body=body)
     hand.do("windowsize", "--sync", hand.window, str(SIZE[0]), str(TALL))
     press(hand, PAINT)
     put(hand, MASK, "none.png")
