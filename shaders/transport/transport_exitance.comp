@@ -21,6 +21,7 @@ layout(push_constant, scalar) uniform Block { TransportExitancePush push; };
 TransportFieldRef field;
 #define FIELD field
 #include "transport/kept.glsl"
+#define LEAST_LEFT 0.05
 #include "transport/transport_ray.glsl"
 
 struct Surface {

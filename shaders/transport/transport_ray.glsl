@@ -1,5 +1,7 @@
 // Light that reaches a point along a ray, back to where it scattered last. The shader that includes it defines first
 //   FIELD  where the TransportFieldRef is
+// and, where rays are few and what is dim is to be told well,
+//   LEAST_LEFT  what a ray keeps at least, in place of TRANSPORT_ROULETTE
 #ifndef QUADGRAPH_TRANSPORT_RAY_GLSL
 #define QUADGRAPH_TRANSPORT_RAY_GLSL
 
@@ -7,6 +9,10 @@
 
 #ifndef FIELD
 #error "transport_ray.glsl: FIELD is not defined"
+#endif
+
+#ifndef LEAST_LEFT
+#define LEAST_LEFT TRANSPORT_ROULETTE
 #endif
 
 #define BODY FIELD.body
@@ -162,9 +168,9 @@ bool goes_past(uint face, inout Ray ray) {
 // source here lets expect of the rest, so that chance has only the difference to that.
 bool survives(inout Ray ray, Way way, inout vec3 sum, inout vec3 before) {
   vec3 left = max(ray.left, ray.left_before);
-  if (any(greaterThanEqual(left, vec3(TRANSPORT_ROULETTE)))) return true;
-  float most = largest(left), grows = TRANSPORT_ROULETTE / most;
-  bool kept = uniform_number(ray.state) * TRANSPORT_ROULETTE < most;
+  if (any(greaterThanEqual(left, vec3(LEAST_LEFT)))) return true;
+  float most = largest(left), grows = LEAST_LEFT / most;
+  bool kept = uniform_number(ray.state) * LEAST_LEFT < most;
   float share = kept ? 1.0 - grows : 1.0;
   sum += share * ray.left * way.ahead;
   before += share * ray.left_before * way.ahead_before;
