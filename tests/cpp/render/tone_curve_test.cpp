@@ -138,7 +138,7 @@ TEST_CASE("automatic exposure brings a grey to the same place on the screen by e
     CHECK(std::abs(bytes[0] - 255 * place(curve, target.luminance)) <= 1);
     const auto red = to_srgb8(picture_of(std::vector<glm::vec3>(50, glm::vec3(0.3f, 0.01f, 0.01f))), {.curve = curve});
     CHECK(red[0] > 180);
-    CHECK(red[0] < 255);  // not clipped
+    CHECK(red[0] < (curve == ToneCurve::agx_punchy ? 255 : 250));  // its look brings a colour that bright near the edge
     CHECK(red[1] < red[0] / 2);
   }
 }
