@@ -269,11 +269,11 @@ struct Engine::Implementation {
   void draw_frame(const View& from, const Camera& camera, const RenderOptions& render, std::uint32_t index) {
     const std::uint32_t count = frame_count(from, render);
     averaged = count > 1;
-    const FrameOffset offset = frame_offset(index, count, render.filter);
+    const FrameOffset offset = frame_offset({index, count}, render.filter);
     const glm::dvec2 lens = 0.5 * double{from.aperture} * offset.lens;
     const Camera there =
         quadgraph::moved(camera, 2.0 * offset.pixel / glm::dvec2(render.width, render.height), lens, focus);
-    render.show.quantity == Quantity::picture ? draw_picture(from, there, render, index)
+    render.show.quantity == Quantity::picture ? draw_picture(from, there, render, {index, count})
                                               : draw_inside(there, render, index == 0);
     if (!averaged) return;
     if (!mean) mean.emplace(device);
@@ -358,8 +358,8 @@ struct Engine::Implementation {
 
   // engine_picture.cpp
   // The body as it looks; how its radiance left, never automatic.
-  Radiance draw_surface(const Camera& camera, const RenderOptions& render, std::uint32_t frame);
-  void draw_picture(const View& from, const Camera& camera, const RenderOptions& render, std::uint32_t frame);
+  Radiance draw_surface(const Camera& camera, const RenderOptions& render, const PictureFrame& frame);
+  void draw_picture(const View& from, const Camera& camera, const RenderOptions& render, const PictureFrame& frame);
 
   // None of shortest paths, which know no faces.
   std::optional<GroundSource> ground_source() const {

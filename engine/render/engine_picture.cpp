@@ -6,7 +6,8 @@ namespace quadgraph {
 
 static_assert(gpu::DOUBT_SAMPLES == points_of_a_tet, "a picture is compared with all that is known of a tet");
 
-Radiance Engine::Implementation::draw_surface(const Camera& camera, const RenderOptions& render, std::uint32_t frame) {
+Radiance Engine::Implementation::draw_surface(const Camera& camera, const RenderOptions& render,
+                                              const PictureFrame& frame) {
   std::optional<PlacedRoughness> placed;
   if (render.roughness_map) placed.emplace(maps.placed(*render.roughness_map));
   const BodyRoughness* own = own_roughness(render);
@@ -54,13 +55,13 @@ Radiance Engine::Implementation::draw_surface(const Camera& camera, const Render
                                      .gather = view_rays ? &*view_rays : nullptr,
                                      .transmission_roughness = render.transmission_roughness,
                                      .frame = frame,
-                                     .single_frame = !averaged},
+                                     .filter = render.filter},
                          camera, render.width, render.height));
   return leaves;
 }
 
 void Engine::Implementation::draw_picture(const View& from, const Camera& camera, const RenderOptions& render,
-                                          std::uint32_t frame) {
+                                          const PictureFrame& frame) {
   legend.reset();
   const glm::vec2 blurred = mirrored(render);
   images.set_roughness(blurred.x, blurred.y, coat_roughness());

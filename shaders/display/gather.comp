@@ -5,6 +5,7 @@
 #include "light/environment.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
+layout(push_constant, scalar) uniform Block { ShadePush push; };
 #include "display/pixel.glsl"
 
 SurfaceScene scene;
@@ -68,10 +69,11 @@ bool is_clear(uint face) {
   return min(sigma.x, min(sigma.y, sigma.z)) * scene.reach < CLEAR_DEPTH;
 }
 
-// Light that leaves a surface: through more facets where the body is clear, since there they differ.
-// What a facet shows must not decide, or the mean of all would be another one.
-Leaving through_facets(uint face, vec3 l, vec3 v, vec3 normal, Facets facets) {
+// Light that leaves a surface: through more facets where the body is clear, since there they differ, and along a
+// silhouette, where a pixel stands out. What a facet shows must not decide, or the mean of all would be another one.
+Leaving through_facets(uint face, vec3 l, vec3 v, vec3 normal, Facets facets, float alpha) {
   uint count = is_rough(facets) && is_clear(face) ? push.facets : 1u;
+  if (is_rough(facets) && alpha < 1.0) count = max(count, push.edge_facets);
   Leaving sum = Leaving(vec3(0), vec3(0), 0.0);
   for (uint k = 0u; k < count; ++k) {
     Leaving one = leaving(face, l, v, normal, scene.scale, facets, VIEW_PARTS);
@@ -86,13 +88,13 @@ Leaving through_facets(uint face, vec3 l, vec3 v, vec3 normal, Facets facets) {
 
 // Whether the pixel is one of those in which two samples of the material are compared, as DOUBT_STRIDE says.
 bool is_compared(uint index) {
-  uint x = index % push.picture_width, y = index / push.picture_width;
+  uint x = index % push.tile.picture_width, y = index / push.tile.picture_width;
   return x % DOUBT_STRIDE == 0u && y % DOUBT_STRIDE == 0u;
 }
 
 // Which sample of the material the block of a pixel is compared with.
 uint sample_of_block(uint index) {
-  uint x = index % push.picture_width / DOUBT_BLOCK, y = index / push.picture_width / DOUBT_BLOCK;
+  uint x = index % push.tile.picture_width / DOUBT_BLOCK, y = index / push.tile.picture_width / DOUBT_BLOCK;
   return hash(x + (y << 16u)) % DOUBT_SAMPLES;
 }
 
@@ -106,13 +108,13 @@ struct Seen {
 };
 
 // The face that sample `first` shows; what is taken leaves `waiting`.
-Seen face_seen(Pixel pixel, uvec4 seen, uint first, inout uint waiting) {
-  Seen all = Seen(scene.triangle_face.at[seen[first] - 1u], 0.0, 0.0, -1.0, vec3(0), vec3(0), vec3(0));
+Seen face_seen(Pixel pixel, SeenPixel seen, uint first, inout uint waiting) {
+  Seen all = Seen(scene.triangle_face.at[seen.samples[first] - 1u], 0.0, 0.0, -1.0, vec3(0), vec3(0), vec3(0));
   for (uint k = first; k < 4u; ++k) {
-    if ((waiting >> k & 1u) == 0u || scene.triangle_face.at[seen[k] - 1u] != all.face) continue;
-    uint samples = alike(seen, k);
+    if ((waiting >> k & 1u) == 0u || scene.triangle_face.at[seen.samples[k] - 1u] != all.face) continue;
+    uint samples = alike(seen.samples, k);
     waiting &= ~samples;
-    Spot spot = spot_of(pixel, seen[k] - 1u, samples);
+    Spot spot = spot_of(pixel, seen.samples[k] - 1u, samples);
     if (all.share == 0.0) {
       all.roughness = roughness_of_leaving(roughness, surface);
       all.lets_out = surface.coat == 0.0 ? -1.0 : 1.0 - evenly;
@@ -124,6 +126,8 @@ Seen face_seen(Pixel pixel, uvec4 seen, uint first, inout uint waiting) {
   }
   all.position /= all.share;
   all.normal = normalize(all.normal);
+  all.share *= seen.scale;
+  all.specular *= seen.scale;
   return all;
 }
 
@@ -138,18 +142,17 @@ void add_doubt(inout PixelDoubt doubt, float share, PixelDoubt of_face) {
 void main() {
   Pixel pixel;
   if (!find_pixel(pixel)) return;
-  uvec4 samples = seen_in(pixel);
-  uint waiting = covered_samples(samples);
+  SeenPixel shown = seen_in(pixel);
+  uint waiting = covered_samples(shown.samples);
   if (waiting != 0u) scene = push.scene.at[0];
   bool doubted = uvec2(push.doubt) != uvec2(0);
   vec3 scattered = vec3(0), specular = vec3(0), seen = vec3(0), unscattered = vec3(0);
   PixelDoubt doubt = PixelDoubt(0.0, 0.0, 0.0, 0.0, 0.0);
   uint materials = doubted && uvec2(scene.elsewhere[0]) != uvec2(0) && is_compared(pixel.index) ? 2u : 1u;
   Opticals middle = BODY.optical;
-  float alpha = 0.0;
   while (waiting != 0u) {
     uint k_first = uint(findLSB(waiting));
-    Seen here = face_seen(pixel, samples, k_first, waiting);
+    Seen here = face_seen(pixel, shown, k_first, waiting);
     vec3 v = towards_eye(scene.eye, here.position);
     vec3 l = coordinates_in(here.face, here.position);
     float rough = push.transmission < 0.0 ? here.roughness : push.transmission;
@@ -158,7 +161,7 @@ void main() {
     vec3 elsewhere = vec3(0);
     for (uint material = materials; material-- > 0u;) {
       BODY.optical = material == 0u ? middle : scene.elsewhere[sample_of_block(pixel.index)];
-      Leaving light = through_facets(here.face, l, v, here.normal, facets);
+      Leaving light = through_facets(here.face, l, v, here.normal, facets, shown.alpha);
       if (material != 0u) {
         elsewhere = light.radiance;
         continue;
@@ -170,13 +173,12 @@ void main() {
       if (doubted) add_doubt(doubt, here.share, doubt_at(here.face, l, light));
     }
     specular += here.specular;
-    alpha += here.share;
   }
   vec3 layers[PICTURE_LAYERS];
   layers[0] = scattered;
   layers[1] = specular;
   layers[2] = unscattered;
   layers[3] = seen;
-  write_pixel(pixel, layers, alpha);
+  write_pixel(pixel, layers, shown.alpha);
   if (doubted) push.doubt.at[pixel.index] = doubt;
 }

@@ -3,6 +3,7 @@
 #include "light/render_shared.h"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
+layout(push_constant, scalar) uniform Block { ResolvePush push; };
 #include "display/pixel.glsl"
 
 vec4 mean_of(Vec4s samples, Pixel pixel) {

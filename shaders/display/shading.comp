@@ -3,6 +3,7 @@
 #include "light/render_shared.h"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
+layout(push_constant, scalar) uniform Block { ShadePush push; };
 #include "display/pixel.glsl"
 #define SCENE push.scene.at[0]
 #include "display/spot.glsl"
@@ -24,21 +25,20 @@ Left left_at(uint vertex) {
 void main() {
   Pixel pixel;
   if (!find_pixel(pixel)) return;
-  uvec4 seen = seen_in(pixel);
+  SeenPixel seen = seen_in(pixel);
   vec3 layers[PICTURE_LAYERS];
   for (uint k = 0u; k < PICTURE_LAYERS; ++k) layers[k] = vec3(0);
-  float alpha = 0.0;
-  uint waiting = covered_samples(seen);
+  uint waiting = covered_samples(seen.samples);
   while (waiting != 0u) {
-    uint k = uint(findLSB(waiting)), samples = alike(seen, k);
+    uint k = uint(findLSB(waiting)), samples = alike(seen.samples, k);
     waiting &= ~samples;
-    Spot spot = spot_of(pixel, seen[k] - 1u, samples);
+    Spot spot = spot_of(pixel, seen.samples[k] - 1u, samples);
     Left a = left_at(spot.vertices.x), b = left_at(spot.vertices.y), c = left_at(spot.vertices.z);
+    spot.share *= seen.scale;
     float radiance = spot.share * spot.even_transmittance;
     layers[0] += radiance * weighed(spot.l, a.exitance, b.exitance, c.exitance);
     layers[1] += spot.share * spot.specular;
     layers[2] += radiance * weighed(spot.l, a.unscattered, b.unscattered, c.unscattered);
-    alpha += spot.share;
   }
-  write_pixel(pixel, layers, alpha);
+  write_pixel(pixel, layers, seen.alpha);
 }

@@ -32,10 +32,30 @@ uint alike(uvec4 seen, uint k) {
   return mask;
 }
 
-// By sample of the pixel.
-uvec4 seen_in(Pixel pixel) {
-  return uvec4(push.seen.at[sample_of(pixel, 0u)], push.seen.at[sample_of(pixel, 1u)],
-               push.seen.at[sample_of(pixel, 2u)], push.seen.at[sample_of(pixel, 3u)]);
+// What the samples of a pixel show.
+struct SeenPixel {
+  uvec4 samples;  // 1 + the display triangle, 0: none
+  float alpha;    // share of the pixel that the body covers
+  float scale;    // that over the share of the samples that show it
+};
+
+// Where the silhouette may cross the pixel, more places than its samples tell what is covered. Where these show
+// nothing, all of them stand for a triangle that covers some of it.
+SeenPixel seen_in(Pixel pixel) {
+  SeenPixel seen;
+  for (uint k = 0u; k < 4u; ++k) seen.samples[k] = push.seen.at[sample_of(pixel, k)];
+  seen.alpha = 0.25 * float(bitCount(covered_samples(seen.samples)));
+  seen.scale = 1.0;
+  uint word = pixel.inside.y * silhouette_words(push.tile.width) + pixel.inside.x / 32u;
+  if ((push.marked.at[word] >> pixel.inside.x % 32u & 1u) == 0u) return seen;
+  PixelCoverage found = push.coverage.at[pixel.inside.y * push.tile.width + pixel.inside.x];
+  if (covered_samples(seen.samples) == 0u) seen.samples = uvec4(found.triangle);
+  int places = 0;
+  for (uint k = 0u; k < COVERAGE_WORDS; ++k) places += bitCount(found.covered[k]);
+  seen.alpha = float(places) / float(COVERAGE_PLACES);
+  if (seen.alpha == 0.0) seen.samples = uvec4(0);
+  seen.scale = 4.0 * seen.alpha / max(float(bitCount(covered_samples(seen.samples))), 1.0);
+  return seen;
 }
 
 // Of the middle of some samples of a pixel: x and y in clip space after division.
@@ -47,8 +67,8 @@ vec2 middle_of(Pixel pixel, uint samples) {
     sum += taken * vec2(0.25 + 0.5 * float(k & 1u), 0.25 + 0.5 * float(k >> 1u));
     count += taken;
   }
-  vec2 size = vec2(float(push.picture_width), float(push.picture_height));
-  vec2 corner = vec2(float(pixel.index % push.picture_width), float(pixel.index / push.picture_width));
+  vec2 size = vec2(float(push.tile.picture_width), float(push.tile.picture_height));
+  vec2 corner = vec2(float(pixel.index % push.tile.picture_width), float(pixel.index / push.tile.picture_width));
   vec2 at = 2.0 * (corner + sum / count) / size - 1.0;
   return vec2(at.x, -at.y);
 }
@@ -73,9 +93,10 @@ vec3 weights_at(mat3 corners, vec2 place) {
   return sum == 0.0 ? vec3(1.0 / 3.0) : area / sum;
 }
 
-// Weights of what lies within; the edges were rounded to a fraction of a pixel when samples were drawn.
+// Weights of what lies within; the edges were rounded to a fraction of a pixel when samples were drawn. Not on an edge
+// itself: on which side of it a ray then begins, a last bit would say.
 vec3 inside_triangle(vec3 l) {
-  l = max(l, vec3(0));
+  l = max(l, vec3(1e-3));
   return l / (l.x + l.y + l.z);
 }
 
@@ -121,8 +142,8 @@ Spot spot_of(Pixel pixel, uint triangle, uint samples) {
   vec3 n = normalize(weighed(spot.l, SCENE.normals.at[at.x], SCENE.normals.at[at.y], SCENE.normals.at[at.z]));
   roughness = SCENE.roughness;
   if (has_roughness_map() || has_normal_map()) {
-    vec3 right = weights_at(corners, place + vec2(1.0 / float(push.picture_width), 0.0));
-    vec3 below = weights_at(corners, place - vec2(0.0, 1.0 / float(push.picture_height)));
+    vec3 right = weights_at(corners, place + vec2(1.0 / float(push.tile.picture_width), 0.0));
+    vec3 below = weights_at(corners, place - vec2(0.0, 1.0 / float(push.tile.picture_height)));
     n = mapped(at, spot.l, right, below, n);
   }
   vec3 first = SCENE.vertices.at[at.x];

@@ -134,23 +134,56 @@ QG_ARRAY(PixelDoubts, PixelDoubt);
 // unscattered.
 #define SAMPLE_LAYERS 3
 
-// resolve.comp, shading.comp, gather.comp: 2 x 2 samples of each pixel of a tile into the picture.
-struct ResolvePush {
-  QG_REF(SurfaceScenes) scene;            // one
-  QG_REF(Uints) seen;                     // per sample: 1 + the display triangle, 0: none; null in resolve.comp
-  QG_REF(Vec4s) samples[SAMPLE_LAYERS];   // null but in resolve.comp
-  QG_REF(Floats) layers[PICTURE_LAYERS];  // RGB per pixel, written
-  QG_REF(Floats) alpha;                   // per pixel, written
-  QG_REF(PixelDoubts) doubt;              // the same, by gather.comp; null: not wanted
-  uint tile_x;                            // first pixel of the tile in the picture
-  uint tile_y;
-  uint tile_width;  // pixels of the tile inside the picture
-  uint tile_height;
+// Of each pixel that the silhouette may cross, places at which it is told whether the body covers them.
+const uint COVERAGE_WORDS = 4u;
+const uint COVERAGE_PLACES = 32u * COVERAGE_WORDS;
+
+struct PixelCoverage {
+  uint covered[COVERAGE_WORDS];  // bits by place
+  uint triangle;                 // 1 + the last display triangle that covers any; 0: none does
+};
+#ifndef __cplusplus
+QG_ARRAY(PixelCoverages, PixelCoverage);
+
+#endif
+
+// Words of 32 bits for a row of a tile, a bit for each pixel.
+QG_INLINE uint silhouette_words(uint width) {
+  return (width + 31u) / 32u;
+}
+
+// Which pixels of a picture those of a tile are, and where their 2 x 2 samples.
+struct TilePixels {
+  uint left;   // column of its first pixel in the picture
+  uint top;    // and row
+  uint width;  // pixels of the tile inside the picture
+  uint height;
   uint sample_stride;  // samples in a row of the tile
   uint picture_width;  // pixels
   uint picture_height;
+};
+
+// resolve.comp: 2 x 2 samples of each pixel of a tile into the picture.
+struct ResolvePush {
+  QG_REF(Vec4s) samples[SAMPLE_LAYERS];
+  QG_REF(Floats) layers[PICTURE_LAYERS];  // RGB per pixel, written
+  QG_REF(Floats) alpha;                   // per pixel, written
+  TilePixels tile;
+};
+
+// shading.comp, gather.comp: what the 2 x 2 samples of each pixel of a tile show, into the picture.
+struct ShadePush {
+  QG_REF(SurfaceScenes) scene;            // one
+  QG_REF(Uints) seen;                     // per sample: 1 + the display triangle, 0: none
+  QG_REF(Uints) marked;                   // pixels of which coverage is told, as silhouette.comp leaves them
+  QG_REF(PixelCoverages) coverage;        // per pixel of the tile
+  QG_REF(Floats) layers[PICTURE_LAYERS];  // RGB per pixel, written
+  QG_REF(Floats) alpha;                   // per pixel, written
+  QG_REF(PixelDoubts) doubt;              // the same, by gather.comp; null: not wanted
+  TilePixels tile;
   uint frame;          // of those that make the picture
   uint facets;         // of a rough surface, for each view ray through a clear body
+  uint edge_facets;    // the same through any body where the pixel is covered in part
   float transmission;  // GGX alpha of the surface for light that comes through; below 0: its own
 };
 

@@ -1,5 +1,7 @@
 #include "engine/render/picture/frame_offsets.h"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -36,7 +38,8 @@ std::uint32_t stride_of(std::uint32_t count) {
 
 }  // namespace
 
-FrameOffset frame_offset(std::uint32_t index, std::uint32_t count, PixelFilter filter) {
+FrameOffset frame_offset(const PictureFrame& frame, PixelFilter filter) {
+  const auto [index, count] = frame;
   if (count == 1) return {};
   const std::uint64_t seed = std::uint64_t{index} * stride_of(count) % count;
   const double radius = std::sqrt((static_cast<double>(seed) + 0.5) / count);
@@ -46,6 +49,21 @@ FrameOffset frame_offset(std::uint32_t index, std::uint32_t count, PixelFilter f
   const glm::dvec2 u = 0.5 + sobol(index) - mean_of_sobol(count);
   return {narrower * glm::dvec2(quantile(filter, u.x), quantile(filter, u.y)),
           radius * glm::dvec2(std::cos(angle), std::sin(angle))};
+}
+
+CoveragePlaces coverage_places(const PictureFrame& frame, PixelFilter filter) {
+  const auto [index, count] = frame;
+  const PixelFilter used = count == 1 ? PixelFilter::box : filter;
+  const glm::dvec2 moved = frame_offset(frame, filter).pixel * glm::dvec2(1, -1);
+  // Each frame has another part of each square of a net (a (0, 2)-sequence), in the middle of which all are together.
+  const double middle = 0.5 / static_cast<double>(std::uint64_t{gpu::COVERAGE_PLACES} * std::bit_ceil(count));
+  CoveragePlaces found{.places = {}, .reach = 0};
+  for (std::uint32_t k = 0; k < gpu::COVERAGE_PLACES; ++k) {
+    const glm::dvec2 u = sobol(gpu::COVERAGE_PLACES * index + k) + middle;
+    found.places[k] = glm::dvec2(quantile(used, u.x), quantile(used, u.y)) + moved;
+    found.reach = std::max({found.reach, std::abs(found.places[k].x), std::abs(found.places[k].y)});
+  }
+  return found;
 }
 
 }  // namespace quadgraph

@@ -21,8 +21,9 @@ namespace {
 
 // Per side: 48 bytes a sample are 48 MiB, and 4 bytes a sample 16 MiB, without what they are copied to.
 constexpr std::uint32_t layers_tile_pixels = 512, seen_tile_pixels = 1024;
-// Of pictures of several frames, for each view ray: what is seen through them differs much.
-constexpr std::uint32_t facets_where_clear = 4;
+// For each view ray: of pictures of several frames where the body is clear, since what is seen through facets differs
+// much there, and along silhouettes; of those of a single frame along silhouettes.
+constexpr std::uint32_t facets_of_several = 4, facets_of_edges = 16;
 
 // Of what draws layers of samples.
 device::GraphicsOptions layers_options(const device::Shader& vertex, const device::Shader& fragment,
@@ -46,7 +47,8 @@ const device::GraphicsOptions visibility_options{.vertex = &shader::visibility_v
 struct Rasteriser::Tile {
   std::uint32_t x, y, width, height;  // pixels inside the picture
 
-  std::uint64_t samples() const { return 4ull * width * height; }
+  std::uint64_t pixels() const { return std::uint64_t{width} * height; }
+  std::uint64_t samples() const { return 4 * pixels(); }
 };
 
 // What tiles are drawn into: images of one kind, which shaders read in place or copies of.
@@ -96,7 +98,8 @@ Rasteriser::Rasteriser(device::Device& device)
     : device_(device),
       resolve_(device, shader::resolve),
       layers_(std::make_unique<Targets>(device, device::Format::rgba32_float, SAMPLE_LAYERS, layers_tile_pixels)),
-      seen_(std::make_unique<Targets>(device, device::Format::r32_uint, 1, seen_tile_pixels)) {}
+      seen_(std::make_unique<Targets>(device, device::Format::r32_uint, 1, seen_tile_pixels)),
+      coverage_(device) {}
 
 const device::GraphicsPass& Rasteriser::surface(const PathInput& input) {
   auto& pass = paths_[input.shadows.shaped() ? 1 : 0];
@@ -127,53 +130,65 @@ device::DrawTarget Rasteriser::target(const Targets& targets, const Tile& tile) 
   return target;
 }
 
-gpu::ResolvePush Rasteriser::resolve_push(const Targets& targets, const Tile& tile) const {
-  gpu::ResolvePush resolve{.scene = scene_.address(),
-                           .seen = 0,
-                           .samples = {},
-                           .layers = {},
-                           .alpha = picture_.alpha.address(),
-                           .doubt = picture_.has_doubt ? picture_.doubt.address() : 0,
-                           .tile_x = tile.x,
-                           .tile_y = tile.y,
-                           .tile_width = tile.width,
-                           .tile_height = tile.height,
-                           .sample_stride = 2 * (targets.in_place() ? targets.width : tile.width),
-                           .picture_width = picture_.width,
-                           .picture_height = picture_.height,
-                           .frame = 0,
-                           .facets = 1,
-                           .transmission = 0};
-  for (std::size_t k = 0; k < PICTURE_LAYERS; ++k) resolve.layers[k] = picture_.layers[k].address();
-  if (&targets == seen_.get()) {
-    resolve.seen = targets.address(0);
-  } else {
-    for (std::size_t k = 0; k < SAMPLE_LAYERS; ++k) resolve.samples[k] = targets.address(k);
-  }
-  return resolve;
+gpu::TilePixels Rasteriser::tile_pixels(const Targets& targets, const Tile& tile) const {
+  return {.left = tile.x,
+          .top = tile.y,
+          .width = tile.width,
+          .height = tile.height,
+          .sample_stride = 2 * (targets.in_place() ? targets.width : tile.width),
+          .picture_width = picture_.width,
+          .picture_height = picture_.height};
 }
 
-void Rasteriser::record_resolve(device::Commands& commands, const char* name, const device::ComputePass& pass,
-                                const Targets& targets, const gpu::ResolvePush& push) {
-  commands.begin_pass(name);
+gpu::ShadePush Rasteriser::shade_push(const RasterInput& input, const Tile& tile) const {
+  const bool single = input.frame.count == 1;
+  gpu::ShadePush push{.scene = scene_.address(),
+                      .seen = seen_->address(0),
+                      .marked = coverage_.marked(),
+                      .coverage = coverage_.covered(),
+                      .layers = {},
+                      .alpha = picture_.alpha.address(),
+                      .doubt = picture_.has_doubt ? picture_.doubt.address() : 0,
+                      .tile = tile_pixels(*seen_, tile),
+                      .frame = input.frame.index,
+                      .facets = single ? 1 : facets_of_several,
+                      .edge_facets = single ? facets_of_edges : facets_of_several,
+                      .transmission = input.transmission_roughness.value_or(-1.0f)};
+  for (std::size_t k = 0; k < PICTURE_LAYERS; ++k) push.layers[k] = picture_.layers[k].address();
+  return push;
+}
+
+// To where shaders read them, if not in place.
+void Rasteriser::copy_samples(device::Commands& commands, const Targets& targets, const Tile& tile) {
   for (std::size_t k = 0; k < targets.samples.size(); ++k) {
-    commands.copy(targets.images[k], targets.samples[k], 2 * push.tile_width, 2 * push.tile_height);
+    commands.copy(targets.images[k], targets.samples[k], 2 * tile.width, 2 * tile.height);
   }
-  commands.dispatch(pass, push, std::uint64_t{push.tile_width} * push.tile_height);
+}
+
+void Rasteriser::record_resolve(device::Commands& commands, const Tile& tile) {
+  gpu::ResolvePush push{
+      .samples = {}, .layers = {}, .alpha = picture_.alpha.address(), .tile = tile_pixels(*layers_, tile)};
+  for (std::size_t k = 0; k < SAMPLE_LAYERS; ++k) push.samples[k] = layers_->address(k);
+  for (std::size_t k = 0; k < PICTURE_LAYERS; ++k) push.layers[k] = picture_.layers[k].address();
+  commands.begin_pass("resolve");
+  copy_samples(commands, *layers_, tile);
+  commands.dispatch(resolve_, push, tile.pixels());
   commands.end_pass();
 }
 
-void Rasteriser::record(device::Commands& commands, const RasterInput& input, const Tile& tile) {
+void Rasteriser::record(device::Commands& commands, const RasterInput& input, const CoveragePlaces& places,
+                        const Tile& tile) {
   if (!visibility_) visibility_.emplace(device_, visibility_options, "visibility");
   commands.begin_pass("visibility");
   commands.draw(target(*seen_, tile), viewport(tile), *visibility_, gpu::VisibilityPush{scene_.address()}, nullptr,
                 3 * input.mesh.triangle_count);
+  copy_samples(commands, *seen_, tile);
   commands.end_pass();
-  gpu::ResolvePush push = resolve_push(*seen_, tile);
-  push.frame = input.frame;
-  push.facets = input.single_frame ? 1 : facets_where_clear;
-  push.transmission = input.transmission_roughness.value_or(-1.0f);
-  record_resolve(commands, input.gather != nullptr ? "gather" : "shading", shading(input), *seen_, push);
+  coverage_.record(commands, tile_pixels(*seen_, tile), scene_.address(), seen_->address(0), input.mesh.triangle_count,
+                   places);
+  commands.begin_pass(input.gather != nullptr ? "gather" : "shading");
+  commands.dispatch(shading(input), shade_push(input, tile), tile.pixels());
+  commands.end_pass();
 }
 
 void Rasteriser::record(device::Commands& commands, const PathInput& input, const Tile& tile) {
@@ -182,7 +197,7 @@ void Rasteriser::record(device::Commands& commands, const PathInput& input, cons
                 gpu::SurfacePathPush{scene_.address(), input.field.address()}, &input.mesh.triangles,
                 3 * input.mesh.triangle_count);
   commands.end_pass();
-  record_resolve(commands, "resolve", resolve_, *layers_, resolve_push(*layers_, tile));
+  record_resolve(commands, tile);
 }
 
 void Rasteriser::record(device::Commands& commands, const FalseColours& input, const Camera& camera, const Tile& tile) {
@@ -195,22 +210,22 @@ void Rasteriser::record(device::Commands& commands, const FalseColours& input, c
   commands.begin_pass("false colour");
   commands.draw(target(*layers_, tile), viewport(tile), *false_colour_, push, &input.indices, input.vertex_count);
   commands.end_pass();
-  record_resolve(commands, "resolve", resolve_, *layers_, resolve_push(*layers_, tile));
+  record_resolve(commands, tile);
 }
 
-// Adds up what the two passes of every tile took.
+// Adds up what the passes of every tile took: the first draws samples, the last one makes pixels of them.
 template <typename Record>
-std::vector<PassStats> Rasteriser::run_tiles(Targets& targets, std::uint32_t width, std::uint32_t height,
-                                             const Record& record_tile) {
+std::vector<PassStats> Rasteriser::run_tiles(Targets& targets, std::size_t pass_count, std::uint32_t width,
+                                             std::uint32_t height, const Record& record_tile) {
   picture_.resize(device_, width, height);
   if (picture_.has_doubt) picture_.make_room_doubt(device_);
   targets.make_room(width, height);
-  std::vector<PassStats> passes(2);
+  std::vector<PassStats> passes(pass_count);
   const std::uint32_t side = targets.tile_pixels;
   for (std::uint32_t y = 0; y < height; y += side) {
     for (std::uint32_t x = 0; x < width; x += side) {
       const Tile tile{x, y, std::min(side, width - x), std::min(side, height - y)};
-      device::Commands commands(device_, 2);
+      device::Commands commands(device_, static_cast<std::uint32_t>(pass_count));
       record_tile(commands, tile);
       const auto times = commands.submit_and_wait();
       for (std::size_t k = 0; k < passes.size(); ++k) {
@@ -219,12 +234,12 @@ std::vector<PassStats> Rasteriser::run_tiles(Targets& targets, std::uint32_t wid
         ++passes[k].count;
       }
       const std::uint64_t colours = targets.images.size() * targets.bytes_of(tile.samples());
-      passes[0].bytes += colours + 4 * tile.samples();            // and depths
-      passes[1].bytes += (targets.in_place() ? 1 : 3) * colours;  // read; copied before
+      passes.front().bytes += (targets.in_place() ? 1 : 3) * colours + 4 * tile.samples();  // copied; and depths
+      passes.back().bytes += colours;                                                       // read
     }
   }
   const std::uint64_t doubt = picture_.has_doubt ? sizeof(gpu::PixelDoubt) : 0;
-  passes[1].bytes += (12 * PICTURE_LAYERS + 4 + doubt) * picture_.pixels();
+  passes.back().bytes += (12 * PICTURE_LAYERS + 4 + doubt) * picture_.pixels();
   return passes;
 }
 
@@ -237,10 +252,10 @@ std::vector<PassStats> Rasteriser::run(const PathInput& input, const Camera& cam
                                        std::uint32_t height) {
   write_scene(surface_scene(input, camera));
   picture_.has_doubt = false;
-  auto passes = run_tiles(*layers_, width, height,
+  auto passes = run_tiles(*layers_, 2, width, height,
                           [&](device::Commands& commands, const Tile& tile) { record(commands, input, tile); });
   picture_.false_colour = false;
-  passes[0].bytes += passes[0].count * (64ull * input.mesh.vertex_count + input.mesh.triangles.size());
+  passes.front().bytes += passes.front().count * (64ull * input.mesh.vertex_count + input.mesh.triangles.size());
   return passes;
 }
 
@@ -248,14 +263,18 @@ std::vector<PassStats> Rasteriser::run(const RasterInput& input, const Camera& c
                                        std::uint32_t height) {
   write_scene(surface_scene(input, camera));
   picture_.has_doubt = input.gather != nullptr && input.gather->share != nullptr;
-  auto passes = run_tiles(*seen_, width, height,
-                          [&](device::Commands& commands, const Tile& tile) { record(commands, input, tile); });
+  coverage_.make_room(std::min(width, seen_tile_pixels), std::min(height, seen_tile_pixels));
+  const CoveragePlaces places = coverage_places(input.frame, input.filter);
+  auto passes = run_tiles(*seen_, 3, width, height,
+                          [&](device::Commands& commands, const Tile& tile) { record(commands, input, places, tile); });
   picture_.false_colour = false;
   picture_.has_surroundings = false;
-  passes[0].bytes += passes[0].count * (input.mesh.vertices.size() + input.mesh.triangles.size());
-  passes[1].bytes += passes[1].count * (64ull * input.mesh.vertex_count + input.mesh.triangles.size());
   // Bytes of the body are counted as if every vertex were read once.
-  if (input.gather != nullptr) passes[1].bytes += passes[1].count * input.gather->field.points().size();
+  const std::uint64_t shape = input.mesh.vertices.size() + input.mesh.triangles.size(), tiles = passes.front().count;
+  passes[0].bytes += tiles * shape;
+  passes[1].bytes += tiles * shape + (sizeof(gpu::PixelCoverage) + 16) * picture_.pixels();
+  passes[2].bytes += tiles * (64ull * input.mesh.vertex_count + input.mesh.triangles.size());
+  if (input.gather != nullptr) passes[2].bytes += tiles * input.gather->field.points().size();
   return passes;
 }
 
@@ -266,11 +285,11 @@ std::vector<PassStats> Rasteriser::run(const FalseColours& input, const Camera& 
                           "false colour");
   }
   picture_.has_doubt = false;
-  auto passes = run_tiles(*layers_, width, height,
+  auto passes = run_tiles(*layers_, 2, width, height,
                           [&](device::Commands& commands, const Tile& tile) { record(commands, input, camera, tile); });
   picture_.false_colour = true;
   picture_.has_surroundings = false;
-  passes[0].bytes += passes[0].count * input.vertices.size();
+  passes.front().bytes += passes.front().count * input.vertices.size();
   return passes;
 }
 

@@ -13,6 +13,8 @@
 #include "engine/render/display/display_buffers.h"
 #include "engine/render/inside/false_mesh.h"
 #include "engine/render/light/shadow_maps.h"
+#include "engine/render/picture/coverage.h"
+#include "engine/render/picture/frame_offsets.h"
 #include "engine/render/picture/picture_buffers.h"
 #include "engine/solve/gather_field.h"
 #include "engine/solve/level_buffers.h"
@@ -59,8 +61,8 @@ struct RasterInput {
   glm::vec2 mirrored{};  // alphas of the two pictures of environments, unless roughness is the same everywhere
   const GatherView* gather = nullptr;             // null: radiance as of a diffuser
   std::optional<float> transmission_roughness{};  // the same of light that comes through; empty: the surface's
-  std::uint32_t frame = 0;                        // of those that make the picture
-  bool single_frame = true;                       // there is no other
+  PictureFrame frame{};
+  PixelFilter filter = PixelFilter::box;
 };
 
 // For radiance from the cells of the shortest-path method.
@@ -111,15 +113,16 @@ class Rasteriser {
 
   device::Viewport viewport(const Tile& tile) const;
   static device::DrawTarget target(const Targets& targets, const Tile& tile);
-  gpu::ResolvePush resolve_push(const Targets& targets, const Tile& tile) const;
-  void record(device::Commands& commands, const RasterInput& input, const Tile& tile);
+  gpu::TilePixels tile_pixels(const Targets& targets, const Tile& tile) const;
+  gpu::ShadePush shade_push(const RasterInput& input, const Tile& tile) const;
+  void record(device::Commands& commands, const RasterInput& input, const CoveragePlaces& places, const Tile& tile);
   void record(device::Commands& commands, const PathInput& input, const Tile& tile);
   void record(device::Commands& commands, const FalseColours& input, const Camera& camera, const Tile& tile);
-  void record_resolve(device::Commands& commands, const char* name, const device::ComputePass& pass,
-                      const Targets& targets, const gpu::ResolvePush& push);
+  static void copy_samples(device::Commands& commands, const Targets& targets, const Tile& tile);
+  void record_resolve(device::Commands& commands, const Tile& tile);
 
   template <typename Record>
-  std::vector<PassStats> run_tiles(Targets& targets, std::uint32_t width, std::uint32_t height,
+  std::vector<PassStats> run_tiles(Targets& targets, std::size_t pass_count, std::uint32_t width, std::uint32_t height,
                                    const Record& record_tile);
 
   void write_scene(const gpu::SurfaceScene& scene);
@@ -135,6 +138,7 @@ class Rasteriser {
   PictureBuffers picture_;
   std::unique_ptr<Targets> layers_, seen_;  // of a tile
   device::Buffer scene_;                    // made at first use, as targets are: no solve needs them
+  Coverage coverage_;
 };
 
 }  // namespace quadgraph

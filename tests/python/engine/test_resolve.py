@@ -33,11 +33,23 @@ def engine():
         yield made
 
 
-def test_alpha_has_as_many_steps_as_there_are_samples(engine):
+def test_alpha_has_as_many_steps_as_there_are_places_that_tell_what_is_covered(engine):
     for samples in (4, 12, 64):
         alpha = engine.render({"azimuth": 30, "elevation": 20}, **SIZE, samples=samples).alpha.astype(float)
-        assert np.abs(samples * alpha - np.rint(samples * alpha)).max() < 1e-4
-        assert len(np.unique(np.rint(samples * alpha))) > min(samples, 8) / 2
+        steps = 128 * alpha * samples / 4  # of four samples each
+        assert np.abs(steps - np.rint(steps)).max() < 1e-3
+        assert len(np.unique(np.rint(steps))) > 32
+
+
+def test_a_silhouette_is_within_a_hundredth_of_what_more_samples_show(engine):
+    shown, alpha = {}, {}
+    for samples in (4, 16, 64):
+        picture = engine.render({"azimuth": 30, "elevation": 20}, **SIZE, samples=samples)
+        shown[samples], alpha[samples] = picture.srgb(exposure=1).astype(float) / 255, picture.alpha
+    edge = (alpha[64] > 0) & (alpha[64] < 1)
+    assert edge.sum() > 100
+    for samples, allowed in {4: 0.015, 16: 0.01}.items():
+        assert np.sqrt(((shown[samples] - shown[64])[edge] ** 2).mean()) < allowed
 
 
 def test_a_lens_blurs_what_it_is_not_in_focus_on(engine):

@@ -26,7 +26,7 @@ METHODS = (
 )
 
 # What a frame does for the light on the surface and for the picture, not for the solution.
-PICTURE_PASSES = ("shadow maps", "irradiance", "visibility", "shading")
+PICTURE_PASSES = ("shadow maps", "irradiance", "visibility", "coverage", "shading")
 
 # What iterating consists of, on all levels.
 SOLVER_PASSES = (

@@ -32,8 +32,8 @@ STAGES = {
     "source": ("source walk", "surface share", "right-hand side"),
     "exitance": ("exitance", "energy", "path field"),
     "picture": (
-        *("gather points", "uncollided", "gathered exitance", "gather scale", "visibility", "shading", "gather"),
-        *("surface", "resolve"),
+        *("gather points", "uncollided", "gathered exitance", "gather scale", "visibility", "coverage", "shading"),
+        *("gather", "surface", "resolve"),
         "path tracing",
         "converging picture",
     ),

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 _MOST_BYTES = 256 << 20  # of the matrix of one channel
 _LIGHT = ("shadow maps", "irradiance")
-_PICTURE = ("visibility", "shading")
+_PICTURE = ("visibility", "coverage", "shading")
 
 
 @dataclass
