@@ -18,9 +18,14 @@ py::array pixels(const Picture& picture, const std::vector<float>& values, py::s
   return view(values.data(), std::move(shape), owner);
 }
 
-Picture picture_of(const FloatArray& radiance) {
+Picture picture_of(const FloatArray& radiance, const std::optional<FloatArray>& alpha,
+                   const std::optional<FloatArray>& transmittance) {
   if (radiance.ndim() != 3 || radiance.shape(2) != 3 || radiance.size() == 0) {
     throw InputError("radiance: an array (h, w, 3) is wanted");
+  }
+  if (alpha && 3 * alpha->size() != radiance.size()) throw InputError("alpha: an array (h, w) is wanted");
+  if (transmittance && transmittance->size() != radiance.size()) {
+    throw InputError("transmittance: an array (h, w, 3) is wanted");
   }
   Picture picture;
   picture.width = static_cast<std::uint32_t>(radiance.shape(1));
@@ -28,7 +33,9 @@ Picture picture_of(const FloatArray& radiance) {
   picture.scattered.assign(radiance.data(), radiance.data() + radiance.size());
   const std::vector<float> nothing(picture.scattered.size());
   picture.specular = picture.unscattered = picture.transmittance = nothing;
-  for (std::size_t i = 0; i < picture.scattered.size(); i += 3) {
+  if (transmittance) picture.transmittance.assign(transmittance->data(), transmittance->data() + transmittance->size());
+  if (alpha) picture.alpha.assign(alpha->data(), alpha->data() + alpha->size());
+  for (std::size_t i = 0; i < picture.scattered.size() && !alpha; i += 3) {
     const float* rgb = &picture.scattered[i];
     picture.alpha.push_back(rgb[0] > 0 || rgb[1] > 0 || rgb[2] > 0 ? 1.0f : 0.0f);
   }
@@ -88,6 +95,25 @@ void bind_image(py::module_& module) {
       py::arg("path"),
       "(h, w, 3) float32, linear, top row first: of .exr, .hdr, or .png, whose sRGB is decoded and whose alpha is left "
       "out. Raises InputError.");
+  module.def(
+      "read_channels",
+      [](const std::filesystem::path& path,
+         const std::vector<std::string>& names) -> std::optional<py::array_t<float>> {
+        if (names.empty() || names.size() > 3) throw InputError("names: one to three are wanted");
+        const std::optional<Image> image = read_exr_channels(path, names);
+        if (!image) return std::nullopt;
+        const auto count = static_cast<py::ssize_t>(names.size());
+        py::array_t<float> found({py::ssize_t{image->height}, py::ssize_t{image->width}, count});
+        float* value = found.mutable_data();
+        for (const glm::vec3& texel : image->texels) {
+          for (py::ssize_t c = 0; c < count; ++c) *value++ = texel[static_cast<int>(c)];
+        }
+        return found;
+      },
+      py::arg("path"), py::arg("names"),
+      "(h, w, len(names)) float32, top row first: one to three channels of an .exr; None where one of them is not "
+      "there. "
+      "Raises InputError.");
 }
 
 }  // namespace
@@ -128,8 +154,11 @@ py::dict shown_with(const Picture& picture, const std::string& json) {
 void bind_picture(py::module_& module) {
   bind_image(module);
   py::class_<Picture>(module, "Picture", "Linear radiance in W/(mm^2 sr), premultiplied by alpha; top row first.")
-      .def(py::init(&picture_of), py::arg("radiance"),
-           "From radiance alone, (h, w, 3): all of it scattered, covered where there is any. Raises InputError.")
+      .def(py::init(&picture_of), py::arg("radiance"), py::arg("alpha") = py::none(),
+           py::arg("transmittance") = py::none(),
+           "From radiance, (h, w, 3), all of it scattered; alpha, (h, w): None: covered where there is any; and the "
+           "share "
+           "of what is behind that is seen through, (h, w, 3), None: none. Raises InputError.")
       .def(
           "auto_exposure",
           [](const Picture& picture, const std::string& json) { return auto_exposure(picture, members(json).tone); },

@@ -7,6 +7,7 @@
 #include <png.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <exception>
 #include <glm/common.hpp>
@@ -44,37 +45,31 @@ void check_values(const std::filesystem::path& path, Image& image) {
 }
 
 // Reads a channel of `file` into component c of every texel.
-void add_slice(Imf::FrameBuffer& frame, const char* name, Image& image, const Imath::Box2i& window, int c) {
+void add_slice(Imf::FrameBuffer& frame, const std::string& name, Image& image, const Imath::Box2i& window,
+               std::size_t c) {
   constexpr std::size_t step = sizeof(glm::vec3);
   const std::size_t row = step * image.width;
-  char* base = reinterpret_cast<char*>(image.texels.data()) + static_cast<std::size_t>(c) * sizeof(float);
+  char* base = reinterpret_cast<char*>(image.texels.data()) + c * sizeof(float);
   base -= window.min.x * static_cast<std::ptrdiff_t>(step) + window.min.y * static_cast<std::ptrdiff_t>(row);
-  frame.insert(name, Imf::Slice(Imf::FLOAT, base, step, row));
+  frame.insert(name.c_str(), Imf::Slice(Imf::FLOAT, base, step, row));
 }
 
-Image read_channels(const std::filesystem::path& path) {
+// Channels of these names, at most three, as components of every texel; nothing where one of them is not there.
+std::optional<Image> read_channels(const std::filesystem::path& path, std::span<const std::string> names) {
   Imf::InputFile file(path.c_str());
   const Imath::Box2i window = file.header().dataWindow();
   const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
   const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
   check_image_size(path, width, height);
+  for (const std::string& name : names) {
+    if (file.header().channels().findChannel(name) == nullptr) return std::nullopt;
+  }
   Image image{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), {}};
   image.texels.resize(static_cast<std::size_t>(width * height));
-  const auto has = [&](const char* name) { return file.header().channels().findChannel(name) != nullptr; };
-  const bool grey = !has("R") && has("Y");
-  if (!grey && !(has("R") && has("G") && has("B"))) {
-    throw InputError(path.string() + ": no channels R, G and B, and no Y");
-  }
   Imf::FrameBuffer frame;
-  for (int c = 0; c < (grey ? 1 : 3); ++c) {
-    constexpr const char* names[] = {"R", "G", "B"};
-    add_slice(frame, grey ? "Y" : names[c], image, window, c);
-  }
+  for (std::size_t c = 0; c < names.size(); ++c) add_slice(frame, names[c], image, window, c);
   file.setFrameBuffer(frame);
   file.readPixels(window.min.y, window.max.y);
-  if (grey) {
-    for (glm::vec3& texel : image.texels) texel = glm::vec3(texel.x);
-  }
   return image;
 }
 
@@ -146,15 +141,23 @@ void check_image_size(const std::filesystem::path& path, std::int64_t width, std
                    " texels, expected 1 to " + std::to_string(largest_side) + " a side");
 }
 
-Image read_exr(const std::filesystem::path& path) {
+std::optional<Image> read_exr_channels(const std::filesystem::path& path, std::span<const std::string> names) {
   try {
-    return read_channels(path);
+    return read_channels(path, names);
   } catch (const InputError&) {
     throw;
   } catch (const std::exception& error) {
     const std::string what = error.what();  // OpenEXR says nothing of a file that ends within its header
     throw InputError(path.string() + ": " + (what.empty() ? "cannot be read as EXR: cut off" : what));
   }
+}
+
+Image read_exr(const std::filesystem::path& path) {
+  if (auto colours = read_exr_channels(path, std::array<std::string, 3>{"R", "G", "B"})) return *colours;
+  auto grey = read_exr_channels(path, std::array<std::string, 1>{"Y"});
+  if (!grey) throw InputError(path.string() + ": no channels R, G and B, and no Y");
+  for (glm::vec3& texel : grey->texels) texel = glm::vec3(texel.x);
+  return *grey;
 }
 
 Image read_png(const std::filesystem::path& path) {

@@ -10,6 +10,7 @@ import argparse
 import json
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from rich.console import Console
@@ -20,6 +21,9 @@ from quadgraph.base.errors import InputError
 from quadgraph.commands import contact_sheet, difference, picture_output, scene_file, scene_options, scene_overrides
 from quadgraph.core import load_core
 
+if TYPE_CHECKING:
+    from quadgraph.core import Picture
+
 _LINEAR, _DISPLAYED = (".exr", ".hdr"), (".png",)
 _SHOWN = {"exposure", "background", "tone", "white_balance"}
 _OF_PICTURES = {"output", "scale", "json", "device", "validation", "no_config"} | _SHOWN
@@ -28,12 +32,17 @@ _LEAST_WIDTH = 240  # pixels of a picture on the sheet: smaller ones are shown l
 
 @dataclass(frozen=True)
 class Side:
-    """A picture to compare: linear values (h, w, 3), whether they are radiance, and reports of solves."""
+    """A picture to compare: linear values (h, w, 3), the picture of radiance, if it is one, and reports of solves."""
 
     name: str
     linear: np.ndarray
-    radiance: bool
+    picture: Picture | None
     reports: list[dict]
+
+    @property
+    def radiance(self) -> bool:
+        """Whether the values are radiance."""
+        return self.picture is not None
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -93,7 +102,7 @@ def read(path: Path, args: argparse.Namespace) -> Side:
     core = load_core()
     suffix = path.suffix.lower()
     if suffix in (*_LINEAR, *_DISPLAYED):
-        return Side(path.name, core.read_image(path), suffix in _LINEAR, [])
+        return read_picture(path)
     if scene_file.is_scene(path):
         stage = core.Stage(device=args.device, validation=args.validation)
         with scene_file.opened(path) as (file, document):
@@ -101,14 +110,28 @@ def read(path: Path, args: argparse.Namespace) -> Side:
             stage.show(file.at(0))
         report, picture = stage.solve(), stage.render()
         scene_options.check_validation(stage.engine)
-        return Side(path.name, radiance(picture), True, [report])
+        return Side(path.name, radiance(picture), picture, [report])
     engine = scene_options.shown_engine(path, args)
     if not (args.view or args.eye):
         front = engine.graph.front if args.up == "y" else 0
         args.view = f"{front:.9g},10"  # the second is seen from where the first is
     engine.set_lights(scene_options.lights(engine, args))
     picture, report = scene_options.picture(engine, args)
-    return Side(path.name, radiance(picture), True, [report])
+    return Side(path.name, radiance(picture), picture, [report])
+
+
+def read_picture(path: Path) -> Side:
+    """A side from a picture's file; an .exr with the alpha and the transmittance that it has. Raises InputError."""
+    core = load_core()
+    linear = core.read_image(path)
+    suffix = path.suffix.lower()
+    if suffix in _DISPLAYED:
+        return Side(path.name, linear, None, [])
+    alpha = behind = None
+    if suffix == ".exr":
+        alpha = core.read_channels(path, ["A"])
+        behind = core.read_channels(path, [f"transmittance.{channel}" for channel in "RGB"])
+    return Side(path.name, linear, core.Picture(linear, alpha, behind), [])
 
 
 def radiance(picture) -> np.ndarray:
@@ -144,15 +167,13 @@ def sheet(args: argparse.Namespace, a: Side, b: Side, found: difference.Differen
 
 def displayed(args: argparse.Namespace, a: Side, b: Side) -> list[np.ndarray]:
     """Both as they are shown, with one exposure, (h, w, 3) uint8."""
-    core = load_core()
-    if not a.radiance:
+    if a.picture is None or b.picture is None:
         return [encoded(side.linear) for side in (a, b)]
-    pictures = [core.Picture(side.linear) for side in (a, b)]
     background = "black" if args.background == "transparent" else args.background
     usual = picture_output.tone(args, background=background)
-    stops = str(pictures[0].auto_exposure(usual) if args.exposure == "auto" else args.exposure)
+    stops = str(a.picture.auto_exposure(usual) if args.exposure == "auto" else args.exposure)
     how = picture_output.tone(args, background=background, exposure=stops)
-    return [picture.srgb(how) for picture in pictures]
+    return [picture.srgb(how) for picture in (a.picture, b.picture)]
 
 
 def encoded(linear: np.ndarray) -> np.ndarray:

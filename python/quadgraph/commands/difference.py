@@ -74,13 +74,13 @@ def bar(width: int, scale: float) -> np.ndarray:
 
     height = contact_sheet.letter_height(width)
     strip = Image.fromarray(contact_sheet.line("", width, height))
-    room = round(0.3 * width)
+    letters = contact_sheet.font(height)
+    number = f"{scale:.2g}".replace("e-0", "e-")
+    room = max(round(0.3 * width), round(letters.getlength(f"+{number}")) + 10)
     strip_of_colours = coloured(np.linspace(-scale, scale, width - 2 * room), scale)
     colours = np.broadcast_to(strip_of_colours, (height, *strip_of_colours.shape))
     strip.paste(Image.fromarray(np.ascontiguousarray(colours)), (room, (strip.height - height) // 2))
     draw = ImageDraw.Draw(strip)
-    letters = contact_sheet.font(height)
-    number = f"{scale:.2g}".replace("e-0", "e-")
     for text, x, anchor in ((f"-{number}", room - 5, "rm"), (f"+{number}", width - room + 5, "lm")):
         draw.text((x, strip.height / 2), text, fill=contact_sheet.DIM, font=letters, anchor=anchor)
     return np.asarray(strip)

@@ -90,6 +90,20 @@ def test_bodies_and_scenes_are_rendered_alike(tmp_path, capsys):
     assert other["relative_rms"]["whole"] > 0.1
 
 
+def test_files_are_shown_as_they_are_rendered_with_what_is_behind_them(tmp_path):
+    options = ["--no-correction", "--size", "240x180", "--device", "cpu", "--exposure", "1"]
+    exr, png, sheet = tmp_path / "a.exr", tmp_path / "a.png", tmp_path / "sheet.png"
+    # With the ground's light and shadow, and a body that is seen through.
+    clear = ["--material", "sigma_s_prime=.01,sigma_a=.01,eta=1.1", "--ground"]
+    assert cli.main(["render", str(tiny.PATH), *options, *clear, "-o", str(exr), "-o", str(png)]) == 0
+    assert cli.main(["compare", str(exr), str(exr), "--exposure", "1", "-o", str(sheet)]) == 0
+    shown, rendered = (np.asarray(Image.open(path).convert("RGB")).astype(int) for path in (sheet, png))
+    gap = contact_sheet.GAP
+    assert np.abs(shown[gap : gap + 180, gap : gap + 240] - rendered).max() <= 1
+    assert _core.read_channels(exr, ["A"]).shape == (180, 240, 1)
+    assert _core.read_channels(exr, ["A", "depth.Z"]) is None
+
+
 def test_colours_say_which_is_brighter_and_the_bar_how_much():
     low, none, high = difference.coloured(np.array([-2.0, 0, 2.0]), 2.0).astype(int)
     assert low[2] > low[0]
@@ -99,6 +113,7 @@ def test_colours_say_which_is_brighter_and_the_bar_how_much():
     np.testing.assert_array_equal(difference.coloured(np.array([5.0]), 1e-320)[0], high)
     bar = difference.bar(240, 0.0125).astype(int)
     row = bar[len(bar) // 2]
+    assert (difference.bar(240, 1.2e-4)[:, :3] == contact_sheet.line("", 240, 1)[0, 0]).all()  # no number is cut off
     assert row[75, 2] > row[75, 0]
     assert row[164, 0] > row[164, 2]
 
