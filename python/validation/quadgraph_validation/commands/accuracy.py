@@ -45,11 +45,13 @@ STUDIES = {
     "acquire": "acquire",
     "volume": "volume",
     "veined": "veined",
+    "wide-field": "wide_field",
+    "inverse": "inverse",
 }
 
 _WIDE = (
     *("dense", "similarity", "forward", "cutoff", "unseen", "pictures"),
-    *("converging", "certificate", "acquire", "volume", "veined"),
+    *("converging", "certificate", "acquire", "volume", "veined", "wide-field", "inverse"),
 )
 _TABLE_WIDTH = 190  # characters, than which the tables of these cannot be read narrower
 
@@ -69,14 +71,18 @@ ON_ENGINE = {
     "acquire": "is what photographs are held against",
     "volume": "is what photographs are held against",
     "veined": "is what photographs are held against",
+    "wide-field": "is held beside other programs",
+    "inverse": "is held beside other programs",
 }
 
 # Studies whose cases have names.
 _BY_ROWS = ("acquire", "certificate", "converging", "dense", "light", "pictures", "veined", "volume")
 _BY_BODIES = ("estimate", "target", "budget")  # whose bodies have names
 _BY_WALKS = ("similarity", "cutoff")  # which solve nothing
+_BESIDE_OTHERS = ("wide-field", "inverse")  # which time other programs
 
 _UNSEEN_WALKS, _ACQUIRE_WALKS, _VEINED_WALKS, _PICTURE_WALKS = 2_000_000, 8192, 20_000, 2000
+_WIDE_FIELD_WALKS = 10_000_000
 _CERTIFICATE_S, _CONVERGING_S = 15.0, 120.0
 
 
@@ -162,8 +168,9 @@ def _add_unseen_options(group: argparse._ArgumentGroup) -> None:
         "--walks",
         type=positive_int,
         metavar="N",
-        help=f"of each truth (default: {_UNSEEN_WALKS}), or of a pixel of acquire (default: {_ACQUIRE_WALKS}), "
-        f"veined (default: {_VEINED_WALKS}), converging and pictures (default: {_PICTURE_WALKS})",
+        help=f"of each truth (default: {_UNSEEN_WALKS}, of wide-field {_WIDE_FIELD_WALKS}), or of a pixel of acquire "
+        f"(default: {_ACQUIRE_WALKS}), veined (default: {_VEINED_WALKS}), converging and pictures (default: "
+        f"{_PICTURE_WALKS})",
     )
     group.add_argument(
         "--sweeps",
@@ -236,6 +243,8 @@ def _run_on_engine(study: ModuleType, args: argparse.Namespace) -> dict:
     if args.study in _BY_ROWS:
         wanted, same = _wanted(study, args)
         return _run_by_rows(study, args, wanted, same)
+    if args.study in _BESIDE_OTHERS:
+        return _run_beside_others(study, args)
     if args.study == "unseen":
         from quadgraph_validation.accuracy import row_tasks
 
@@ -268,6 +277,22 @@ def _run_on_engine(study: ModuleType, args: argparse.Namespace) -> dict:
         return case_tasks.of_bodies(args.study, args.device, args.meshes, args.scene, args.scheduler)
     with Console(stderr=True).status(f"study: {args.study}"):
         return study.run(args.device, args.meshes, args.scene)
+
+
+def _run_beside_others(study: ModuleType, args: argparse.Namespace) -> dict:
+    """Run a study in which other programs are timed as well."""
+    if args.scheduler:
+        raise InputError(f"{args.study}: --scheduler found, but programs are timed one after the other on one machine")
+    with Console(stderr=True).status(f"study: {args.study}") as status:
+        walks = args.walks or _WIDE_FIELD_WALKS
+        of_study = {"wide-field": lambda: study.WideFieldRun(walks, args.device)}
+        wanted = of_study.get(args.study, lambda: study.InverseRun(args.device))()
+        record = study.run(wanted, lambda what: status.update(f"study: {args.study}, {what}"))
+    if args.images and args.study == "inverse":
+        from quadgraph_validation.accuracy import inverse_figures
+
+        inverse_figures.write(args.images / "inverse.png", record)
+    return record
 
 
 def _run_scenes(study: ModuleType, args: argparse.Namespace) -> dict:

@@ -45,7 +45,7 @@ def load() -> Any:
 def _found() -> tuple[Any, str]:
     """The module, or what is wrong with it. Asked only once: pmmc 0.3.12 hangs when it fails to find a device again."""
     try:
-        with _silent():
+        with silent():
             pmmc = extra_module.load("pmmc", "truth")
             devices = pmmc.gpuinfo()
     except InputError as error:
@@ -143,7 +143,7 @@ def _run(
         "detpos": [[*body.vertices.mean(axis=0).tolist(), 1e4]],
         "maxdetphoton": walks + 10,
     }
-    with _silent():
+    with silent():
         found = np.asarray(pmmc.run(options)["detp"], np.float64)
     # Rows: detector, scatterings, length of the way in mm, position, direction, weight at the start.
     return found[9] * np.exp(-medium.sigma_a * found[2]), found[1] > 0, found[3:6].T
@@ -158,7 +158,7 @@ def _tet_around(body: Graph, point: np.ndarray) -> int:
 
 
 @contextmanager
-def _silent() -> Iterator[None]:
+def silent() -> Iterator[None]:
     """Keep what compiled code prints, to either stream, from the terminal."""
     streams = sys.stdout, sys.stderr
     kept = [os.dup(number) for number in (1, 2)]
