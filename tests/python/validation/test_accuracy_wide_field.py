@@ -98,6 +98,14 @@ def test_redbird_agrees_with_the_engine_where_light_has_become_diffuse(path):
     assert back[1] == pytest.approx(back[0], rel=0.1)
 
 
+def test_redbirds_own_reconstruction_finds_the_absorption_of_its_own_reading(path):
+    needs_redbird()
+    reading = wide_field_ways.WAYS["redbirdpy, cg+amg"](path, "cpu")(MEDIUM).detector
+    found = wide_field_ways.reconstructed(path, reading, 0.01, 5)
+    # Its source stays where the start put it.
+    assert found == pytest.approx(MEDIUM.sigma_a, rel=0.03)
+
+
 @pytest.mark.long
 @pytest.mark.skipif(bool(NO_PMMC), reason=NO_PMMC)
 def test_the_corrected_engine_is_nearest_to_the_walks_and_fits_their_coefficients():
@@ -110,7 +118,7 @@ def test_the_corrected_engine_is_nearest_to_the_walks_and_fits_their_coefficient
     fits = {fit["name"]: fit for fit in record["fits"]}
     for name in ("sigma_a", "sigma_s_prime"):
         assert abs(fits["ours"][name]) < 0.05 < abs(fits["redbirdpy, cg+amg"][name])
-    assert [table.row_count for table in wide_field_study.tables(record)] == [6, 3]
+    assert [table.row_count for table in wide_field_study.tables(record)] == [6, 4]
 
 
 def test_without_redbird_the_way_to_get_it_is_told(monkeypatch):
