@@ -12,7 +12,7 @@ from quadgraph.base.errors import InputError
 from quadgraph_validation.accuracy import inverse_study
 from quadgraph_validation.accuracy.inverse_study import SIDES, TRUE, InverseRun
 from quadgraph_validation.truth import path_tracing, photographed
-from quadgraph_validation.truth.traced_block import Step, TracedBlock
+from quadgraph_validation.truth.traced_block import DescentStep, TracedBlock
 
 pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
 
@@ -34,7 +34,7 @@ def subject(tmp_path_factory):
 
 
 def test_steps_are_shown_with_the_mean_of_the_last_of_them():
-    steps = [Step(number, 2 * number, np.full((2, 3), 2.0**number)) for number in range(1, 21)]
+    steps = [DescentStep(number, 2 * number, np.full((2, 3), 2.0**number)) for number in range(1, 21)]
     shown = inverse_study.means(steps)
     assert [step.seconds for step in shown] == [5, 10, 20]
     assert [step.processor_s for step in shown] == [10, 20, 40]

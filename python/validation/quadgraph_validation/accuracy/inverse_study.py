@@ -30,7 +30,7 @@ from quadgraph.base.progress import ProgressCallback
 from quadgraph_validation.base.thread_count import limited_threads
 from quadgraph_validation.bodies import boxes, unseen_bodies
 from quadgraph_validation.truth import path_tracing, photographed
-from quadgraph_validation.truth.traced_block import Descent, Shot, Step, TracedBlock
+from quadgraph_validation.truth.traced_block import Descent, DescentStep, TracedBlock, WantedPicture
 
 SIDES = np.array([16.0, 16.0, 8.0])  # mm
 TRUE = np.array([[0.01, 0.02, 0.03], [1.2, 1.0, 0.8]])  # 1/mm, sigma_a and sigma_s'
@@ -130,7 +130,7 @@ def photograph(folder: Path, samples: int, threads: int) -> None:
     photographed.write(folder / "capture.json", found, cameras, taken, {"made_by": "Mitsuba"})
 
 
-def acquired(folder: Path, device: str, corrected: bool) -> list[Step]:
+def acquired(folder: Path, device: str, corrected: bool) -> list[DescentStep]:
     """What `acquire` finds, after each of its outer steps."""
     begun, used = time.perf_counter(), time.process_time()
     times = []
@@ -142,11 +142,11 @@ def acquired(folder: Path, device: str, corrected: bool) -> list[Step]:
     read = capture.read(folder / "capture.json")
     fit = recover(read, corrected, None, tell, lambda share: None, device).fit
     assert isinstance(fit, Fit)  # homogeneous
-    steps = [Step(*when, step.coefficients) for when, step in zip(times, fit.steps, strict=True)]
-    return [*steps, Step(time.perf_counter() - begun, time.process_time() - used, fit.coefficients)]
+    steps = [DescentStep(*when, step.coefficients) for when, step in zip(times, fit.steps, strict=True)]
+    return [*steps, DescentStep(time.perf_counter() - begun, time.process_time() - used, fit.coefficients)]
 
 
-def descended(folder: Path, how: Descent) -> list[Step]:
+def descended(folder: Path, how: Descent) -> list[DescentStep]:
     """What Mitsuba's derivatives lead to, after each step."""
     read = capture.read(folder / "capture.json")
     stated = json.loads((folder / "capture.json").read_text())
@@ -155,22 +155,22 @@ def descended(folder: Path, how: Descent) -> list[Step]:
         exposure, noise = entry["exposure"], entry["noise"]
         variance = noise["read_out"] ** 2 + noise["shot"] * np.maximum(each.values, 0)
         camera, light = stated["cameras"][entry["camera"]], stated["lights"][entry["lights"][0]]
-        shots.append(Shot(camera, light, each.values / exposure, variance / exposure**2))
+        shots.append(WantedPicture(camera, light, each.values / exposure, variance / exposure**2))
     return TracedBlock(SIDES, how.threads).descend(shots, how, lambda number: None)
 
 
-def means(steps: list[Step]) -> list[Step]:
+def means(steps: list[DescentStep]) -> list[DescentStep]:
     """Some of the steps, each with the mean of the logarithms of those before it."""
     result = []
     for number in _SHOWN:
         if number <= len(steps):
             first = min(int(number * (1 - _KEPT)), number - 1)
             logs = np.mean([np.log(step.coefficients) for step in steps[first:number]], axis=0)
-            result.append(Step(steps[number - 1].seconds, steps[number - 1].processor_s, np.exp(logs)))
+            result.append(DescentStep(steps[number - 1].seconds, steps[number - 1].processor_s, np.exp(logs)))
     return result
 
 
-def _judged(steps: list[Step], folder: Path, device: str) -> dict[str, Any]:
+def _judged(steps: list[DescentStep], folder: Path, device: str) -> dict[str, Any]:
     """How far what was found is off at each time, and at last, by channel."""
     exact = _picture(folder, TRUE, device)
     trace = []

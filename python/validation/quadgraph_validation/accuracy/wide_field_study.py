@@ -86,7 +86,7 @@ def write(path: Path, interior: float) -> None:
     bake(mesh, path, BakeOptions(unit="mm", interior=interior))
 
 
-def row(name: str, found: ways.Measured, true: Truth) -> dict[str, Any]:
+def row(name: str, found: ways.WayTaken, true: Truth) -> dict[str, Any]:
     """What a way is off by, and takes."""
     taken = {key: getattr(found, key) for key in ("set_up_s", "solve_s", "clock_s", "peak_bytes", "tets")}
     return {"name": name} | case.judged(found.left, true) | taken

@@ -30,7 +30,7 @@ Solve = Callable[[Medium], Left]
 
 
 @dataclass(frozen=True)
-class Measured:
+class WayTaken:
     """What a way found; seconds of processors of a set-up and of one solve, and of this by the clock; bytes: that it
     took at most beyond what there was before it; tets.
     """
@@ -148,7 +148,7 @@ def by_engine(path: Path, device: str, correction: bool) -> Solve:
     return solve
 
 
-def measured(name: str, path: Path, device: str) -> Measured:
+def measured(name: str, path: Path, device: str) -> WayTaken:
     """By the way of that name in WAYS; solved twice, and the second time counts."""
     before = _bytes("VmRSS")
     used = time.process_time()
@@ -160,7 +160,7 @@ def measured(name: str, path: Path, device: str) -> Measured:
     left = solve(MEDIUM)
     seconds, used = time.perf_counter() - begun, time.process_time() - used
     peak = _bytes("VmHWM") - before
-    return Measured(left, set_up, used, seconds, peak, len(tets_of(path).tets))
+    return WayTaken(left, set_up, used, seconds, peak, len(tets_of(path).tets))
 
 
 def _bytes(name: str) -> int:

@@ -22,7 +22,7 @@ _EXTINCTION, _ALBEDO = "body.interior_medium.sigma_t.value.value", "body.interio
 
 
 @dataclass(frozen=True, eq=False)
-class Shot:
+class WantedPicture:
     """A photograph to be met: camera and light as captures state them; radiance (h, w, 3), and its variance."""
 
     camera: dict[str, Any]
@@ -45,7 +45,7 @@ class Descent:
 
 
 @dataclass(frozen=True)
-class Step:
+class DescentStep:
     """After a step: seconds by the clock and of processors since the beginning, and (2, 3) sigma_a and sigma_s'."""
 
     seconds: float
@@ -97,7 +97,7 @@ class TracedBlock:
         each = np.array(pictures, np.float64)
         return each.mean(axis=0), each.std(axis=0) / np.sqrt(batches - 1)
 
-    def descend(self, shots: Sequence[Shot], how: Descent, tell: Callable[[int], None]) -> list[Step]:
+    def descend(self, shots: Sequence[WantedPicture], how: Descent, tell: Callable[[int], None]) -> list[DescentStep]:
         """Follow the coefficients to where all shots are met best. tell: is given the number of each step."""
         mitsuba, drjit = self._mitsuba, self._drjit
         begun, used = time.perf_counter(), time.process_time()
@@ -122,7 +122,7 @@ class TracedBlock:
                 drjit.backward(drjit.mean((seen - wanted[k]) ** 2 * weights[k], axis=None))
             optimiser.step()
             found = np.exp([np.array(optimiser[name]).ravel() for name in ("absorption", "scattering")])
-            steps.append(Step(time.perf_counter() - begun, time.process_time() - used, found))
+            steps.append(DescentStep(time.perf_counter() - begun, time.process_time() - used, found))
         return steps
 
 
