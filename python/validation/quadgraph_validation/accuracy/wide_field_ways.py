@@ -89,7 +89,7 @@ def reconstructed(path: Path, reading: float, start: float, steps: int) -> float
     cfg, pairs = module.meshprep(_asked(body, guess))
     bulk = {"mua": start, "musp": guess.sigma_s_prime, "n": ETA}
     unknown = {"prop": _properties(guess), "seg": np.ones(len(body.vertices), int), "bulk": bulk}
-    given: dict[str, Any] = {"maxiter": steps, "lambda_": 1e-9, "method": "cg+amg", "report": False}
+    given: dict[str, Any] = {"maxiter": steps, "lambda_": 1e-9, "method": "cg+amg", "nthread": 1, "report": False}
     found = module.runrecon(cfg, unknown, np.array([[reading]]), pairs, reform="logphase", **given)[0]
     return float(np.asarray(found["prop"])[1, 0])
 
