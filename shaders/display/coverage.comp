@@ -96,7 +96,8 @@ void main() {
   uint triangle = gl_GlobalInvocationID.x;
   if (triangle >= push.triangles) return;
   vec4 a = clip_of(0u), b = clip_of(1u), c = clip_of(2u);
-  if (dot(vec3(a.x, a.y, a.w), cross(vec3(b.x, b.y, b.w), vec3(c.x, c.y, c.w))) <= 0.0) return;  // turned away, or nothing
+  float facing = dot(vec3(a.x, a.y, a.w), cross(vec3(b.x, b.y, b.w), vec3(c.x, c.y, c.w)));
+  if (!(facing > 0.0)) return;  // turned away, nothing, or not a number
   ivec4 near = pixels_near(a, b, c);
   near.y = max(near.y, int(push.first_row));
   near.w = min(near.w, int(push.first_row + push.row_count) - 1);

@@ -1,7 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "gather/gather_shared.h"
-#include "material/fresnel.glsl"
 #include "source/face_azimuth.glsl"
 #include "source/lambertian.glsl"
 
