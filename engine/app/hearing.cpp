@@ -82,7 +82,8 @@ void Viewer::hear(bool half_way) {
 bool Viewer::unwanted() const {
   if (leaving_) return true;
   if (!making_ || !making_->droppable || writing_) return false;
-  return state_.screenshot || opens() || wanted_scene() != making_->scene || part() != making_->part;
+  const bool turns = state_.turntable && !dragging_;
+  return state_.screenshot || opens() || turns || wanted_scene() != making_->scene || part() != making_->part;
 }
 
 }  // namespace quadgraph

@@ -30,6 +30,27 @@ def wait_for(hand, what: str, seen) -> None:
         time.sleep(0.1)
 
 
+def seconds_until(hand, what: str, seen) -> float:
+    begun = time.monotonic()
+    wait_for(hand, what, seen)
+    return time.monotonic() - begun
+
+
+def test_the_turntable_begins_amid_a_solve_for_the_mean(open_window):
+    slow = ["--sweep-points", "40000", "--sweeps", "4", "--samples", "4", "--no-ground", "--radiance", "gathered"]
+    hand = open_window(*LOOK, *slow, "--converge", "0.1%", size=SIZE)
+    hand.settle()
+    settled = body_of(hand)
+    solve = seconds_until(hand, "no solve joins the mean", lambda: not np.array_equal(body_of(hand), settled))
+    before = body_of(hand)
+    hand.keys("t")
+    took = seconds_until(hand, "nothing turns", lambda: np.abs(body_of(hand) - before).max() > 60)
+    print(f"a solve for the mean takes {solve:.1f} s; turning began after {took:.1f} s")
+    assert took < solve / 2
+    hand.keys("Escape")
+    hand.close()
+
+
 def test_a_picture_at_rest_goes_on_to_its_error_and_is_saved_with_its_noise(open_window, tmp_path: Path):
     plain = open_window(*LOOK, *QUICK, size=SIZE)
     before = plain.screen()[NOTE : SIZE[1], PANEL : SIZE[0]]
