@@ -6,7 +6,6 @@ pmmc starts walks of wide light in tets outside the body that are labelled so: a
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -16,7 +15,6 @@ from quadgraph_validation.truth import pmmc_walk
 
 _LAYER = 1.0  # mm of air in front of the lit face
 _PRISM = np.array([[0, 1, 2, 5], [0, 1, 4, 5], [0, 3, 4, 5]])
-_END = 1e-5  # s after which pmmc lets go of a walk: none lives as long
 
 
 @dataclass(frozen=True)
@@ -40,8 +38,7 @@ def square(body: Graph, medium: Medium, eta: float, half: float, walks: int, see
     pmmc = pmmc_walk.load()
     vertices, tets = _with_air(body)
     low = float(body.vertices[:, 2].min())
-    options: dict[str, Any] = {
-        "nphoton": walks,
+    options = pmmc_walk.leaving_options(medium, eta, np.zeros(3), walks, seed) | {
         "node": vertices.astype(np.float32),
         "elem": (tets + 1).astype(np.int32),
         "elemprop": np.where(np.arange(len(tets)) < len(body.tets), 1, -1).astype(np.int32),
@@ -50,31 +47,15 @@ def square(body: Graph, medium: Medium, eta: float, half: float, walks: int, see
         "srcdir": [0, 0, 1],
         "srcparam1": [2 * half, 0, 0, 0],
         "srcparam2": [0, 2 * half, 0, 0],
-        "prop": [[0, 0, 1, 1], [medium.sigma_a, medium.sigma_s_prime, 0, eta]],
-        "isreflect": int(eta != 1),
-        "tstart": 0,
-        "tend": _END,
-        "tstep": _END,
-        "compute": "sse",
-        "method": "havel",
         "basisorder": 0,
         "outputtype": "fluence",
-        "gpuid": 1,
-        "seed": seed,
-        # One detector around everything: every walk that leaves is told.
-        "issavedet": 1,
-        "issaveexit": 1,
-        "detpos": [[0, 0, 0, 1e4]],
-        "maxdetphoton": walks + 10,
     }
     with pmmc_walk.silent():
         result = pmmc.run(options)
-    found = np.asarray(result["detp"], np.float64)
-    # Rows: detector, scatterings, length of the way in mm, position, direction, weight at the start.
-    weight, scattered = found[9] * np.exp(-medium.sigma_a * found[2]), found[1] > 0
-    turned_back = int((~scattered & (found[5] < low + 1e-3)).sum())
+    weight, scattered, position = pmmc_walk.that_left(result, medium)
+    turned_back = int((~scattered & (position[:, 2] < low + 1e-3)).sum())
     fluence = np.asarray(result["flux"], np.float64).ravel()[: len(body.tets)]
-    return LeftWalks(weight[scattered], found[3:6].T[scattered], walks - turned_back, walks, fluence)
+    return LeftWalks(weight[scattered], position[scattered], walks - turned_back, walks, fluence)
 
 
 def _with_air(body: Graph) -> tuple[np.ndarray, np.ndarray]:

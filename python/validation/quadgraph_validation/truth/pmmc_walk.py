@@ -120,14 +120,22 @@ def _run(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """What of each walk that left is left (n,), whether it had scattered, and where it left (n, 3)."""
     pmmc = load()
-    options: dict[str, Any] = {
-        "nphoton": walks,
+    options = leaving_options(medium, eta, body.vertices.mean(axis=0), walks, seed) | {
         "node": body.vertices.astype(np.float32),
         "elem": (body.tets + 1).astype(np.int32),
         "elemprop": np.ones(len(body.tets), np.int32),
         "srcpos": start.tolist(),
         "srcdir": way.tolist(),
         "e0": _tet_around(body, start) + 1,
+    }
+    with silent():
+        return that_left(pmmc.run(options), medium)
+
+
+def leaving_options(medium: Medium, eta: float, middle: np.ndarray, walks: int, seed: int) -> dict[str, Any]:
+    """Options of pmmc by which it tells each walk that leaves a body around `middle`, (3,) mm."""
+    return {
+        "nphoton": walks,
         "prop": [[0, 0, 1, 1], [medium.sigma_a, medium.sigma_s_prime, 0, eta]],
         "isreflect": int(eta != 1),
         "tstart": 0,
@@ -140,11 +148,14 @@ def _run(
         # One detector around everything: every walk that leaves is told.
         "issavedet": 1,
         "issaveexit": 1,
-        "detpos": [[*body.vertices.mean(axis=0).tolist(), 1e4]],
+        "detpos": [[*middle.tolist(), 1e4]],
         "maxdetphoton": walks + 10,
     }
-    with silent():
-        found = np.asarray(pmmc.run(options)["detp"], np.float64)
+
+
+def that_left(result: dict[str, Any], medium: Medium) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """What of each walk that left is left (n,), whether it had scattered, and where it left (n, 3)."""
+    found = np.asarray(result["detp"], np.float64)
     # Rows: detector, scatterings, length of the way in mm, position, direction, weight at the start.
     return found[9] * np.exp(-medium.sigma_a * found[2]), found[1] > 0, found[3:6].T
 
