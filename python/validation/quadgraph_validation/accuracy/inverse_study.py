@@ -8,11 +8,9 @@ by the picture of what they found under a light that no photograph had, over the
 from __future__ import annotations
 
 import json
-import multiprocessing
 import os
 import tempfile
 import time
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -27,6 +25,7 @@ from quadgraph.acquisition.recovery import recover
 from quadgraph.api.materials import Material
 from quadgraph.baking.pipeline import BakeOptions, bake
 from quadgraph.base.progress import ProgressCallback
+from quadgraph_validation.base.apart import apart
 from quadgraph_validation.base.thread_count import limited_threads
 from quadgraph_validation.bodies import boxes, unseen_bodies
 from quadgraph_validation.truth import path_tracing, photographed
@@ -68,17 +67,17 @@ def run(wanted: InverseRun, tell: ProgressCallback) -> dict[str, Any]:
         write_body(folder)
         bake_s = time.perf_counter() - begun
         tell("photographs")
-        _apart(photograph, folder, wanted.photographed, wanted.threads)
+        apart(photograph, folder, wanted.photographed, wanted.threads)
         rows = []
         for title, corrected in (("acquire --no-correction", False), ("acquire", True)):
             tell(title)
-            found = _apart(acquired, folder, wanted.device, corrected)
+            found = apart(acquired, folder, wanted.device, corrected)
             rows.append({"name": title} | _judged(found, folder, wanted.device))
         for samples in wanted.samples:
             title = f"prbvolpath, {samples} samples a pixel"
             tell(title)
             how = Descent(samples, _RATE, _DECAY, wanted.steps, START, wanted.threads)
-            found = means(_apart(descended, folder, how))
+            found = means(apart(descended, folder, how))
             rows.append({"name": title} | _judged(found, folder, wanted.device))
     return {"threads": wanted.threads, "load": round(os.getloadavg()[0], 1), "bake_s": bake_s, "rows": rows}
 
@@ -193,12 +192,6 @@ def _picture(folder: Path, coefficients: np.ndarray, device: str) -> np.ndarray:
     stage.show(core.scene_file(json.dumps(document)).at(0))
     stage.solve()
     return np.array(stage.render().scattered, np.float64)
-
-
-def _apart(function: Any, *arguments: Any) -> Any:
-    """What a function returns in a process of its own."""
-    with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
-        return pool.submit(function, *arguments).result()
 
 
 def tables(record: dict[str, Any]) -> list[Table]:

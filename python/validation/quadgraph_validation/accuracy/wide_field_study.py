@@ -6,11 +6,9 @@ fitted through each way's predictions to what these walks measured on the faces.
 
 from __future__ import annotations
 
-import multiprocessing
 import os
 import tempfile
 import time
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -23,6 +21,7 @@ from quadgraph.base.progress import ProgressCallback
 from quadgraph_validation.accuracy import wide_field_case as case
 from quadgraph_validation.accuracy import wide_field_ways as ways
 from quadgraph_validation.accuracy.wide_field_case import MEDIUM, REGIONS, Left, Truth
+from quadgraph_validation.base.apart import apart
 from quadgraph_validation.base.thread_count import limited_threads
 from quadgraph_validation.bodies import boxes, unseen_bodies
 from quadgraph_validation.bodies.media import Medium
@@ -61,12 +60,12 @@ def run(wanted: WideFieldRun, tell: ProgressCallback) -> dict[str, Any]:
         rows, fits = [], []
         for way in ways.WAYS:
             tell(way)
-            rows.append(row(way, _apart(ways.measured, way, path, wanted.device), true))
+            rows.append(row(way, apart(ways.measured, way, path, wanted.device), true))
         for way in _FITTED:
             tell(f"fit, {way}")
-            fits.append({"name": way} | _apart(fitted, way, path, wanted.device, true))
+            fits.append({"name": way} | apart(fitted, way, path, wanted.device, true))
         tell("redbirdpy's reconstruction")
-        fits.append(_apart(reconstructed, path, true))
+        fits.append(apart(reconstructed, path, true))
     return {
         "walks": wanted.walks,
         "threads": wanted.threads,
@@ -141,12 +140,6 @@ def _differences(residuals: Any) -> Any:
 
 def _patches(left: Left) -> np.ndarray:
     return np.concatenate([left.regions()[name] for name in REGIONS])
-
-
-def _apart(function: Any, *arguments: Any) -> Any:
-    """What a function returns in a process of its own, which has taken no memory for anything else."""
-    with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
-        return pool.submit(function, *arguments).result()
 
 
 def tables(record: dict[str, Any]) -> list[Table]:
