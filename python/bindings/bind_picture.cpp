@@ -111,9 +111,9 @@ void bind_image(py::module_& module) {
         return found;
       },
       py::arg("path"), py::arg("names"),
-      "(h, w, len(names)) float32, top row first: one to three channels of an .exr; None where one of them is not "
-      "there. "
-      "Raises InputError.");
+      "(h, w, len(names)) float32, top row first: one to three channels of an .exr, what is below 0 as 0; None where "
+      "one "
+      "is not there. Raises InputError.");
 }
 
 }  // namespace
@@ -156,7 +156,7 @@ void bind_picture(py::module_& module) {
   py::class_<Picture>(module, "Picture", "Linear radiance in W/(mm^2 sr), premultiplied by alpha; top row first.")
       .def(py::init(&picture_of), py::arg("radiance"), py::arg("alpha") = py::none(),
            py::arg("transmittance") = py::none(),
-           "From radiance, (h, w, 3), all of it scattered; alpha, (h, w): None: covered where there is any; and the "
+           "From radiance, (h, w, 3), all of it scattered; alpha, (h, w), None: covered where there is any; and the "
            "share "
            "of what is behind that is seen through, (h, w, 3), None: none. Raises InputError.")
       .def(

@@ -73,6 +73,18 @@ std::optional<Image> read_channels(const std::filesystem::path& path, std::span<
   return image;
 }
 
+// Says what is wrong with the file.
+std::optional<Image> exr_channels(const std::filesystem::path& path, std::span<const std::string> names) {
+  try {
+    return read_channels(path, names);
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::exception& error) {
+    const std::string what = error.what();  // OpenEXR says nothing of a file that ends within its header
+    throw InputError(path.string() + ": " + (what.empty() ? "cannot be read as EXR: cut off" : what));
+  }
+}
+
 // Linear value of a byte of a PNG, the inverse of srgb_encode (tone_map.h).
 float srgb_decode(std::uint8_t value) {
   const float encoded = static_cast<float>(value) / 255;
@@ -142,19 +154,14 @@ void check_image_size(const std::filesystem::path& path, std::int64_t width, std
 }
 
 std::optional<Image> read_exr_channels(const std::filesystem::path& path, std::span<const std::string> names) {
-  try {
-    return read_channels(path, names);
-  } catch (const InputError&) {
-    throw;
-  } catch (const std::exception& error) {
-    const std::string what = error.what();  // OpenEXR says nothing of a file that ends within its header
-    throw InputError(path.string() + ": " + (what.empty() ? "cannot be read as EXR: cut off" : what));
-  }
+  std::optional<Image> image = exr_channels(path, names);
+  if (image) check_values(path, *image);
+  return image;
 }
 
 Image read_exr(const std::filesystem::path& path) {
-  if (auto colours = read_exr_channels(path, std::array<std::string, 3>{"R", "G", "B"})) return *colours;
-  auto grey = read_exr_channels(path, std::array<std::string, 1>{"Y"});
+  if (auto colours = exr_channels(path, std::array<std::string, 3>{"R", "G", "B"})) return *colours;
+  auto grey = exr_channels(path, std::array<std::string, 1>{"Y"});
   if (!grey) throw InputError(path.string() + ": no channels R, G and B, and no Y");
   for (glm::vec3& texel : grey->texels) texel = glm::vec3(texel.x);
   return *grey;

@@ -28,7 +28,7 @@ std::shared_ptr<const ImagePyramid> load_pyramid(const std::filesystem::path& pa
 
 // The parts of read_image.
 Image read_exr(const std::filesystem::path& path);
-// At most three, as they stand, as components of the texels; nothing where one is not there.
+// At most three, as components of the texels; nothing where one is not there. Values and errors as of read_image.
 std::optional<Image> read_exr_channels(const std::filesystem::path& path, std::span<const std::string> names);
 Image read_hdr(const std::filesystem::path& path);
 Image read_png(const std::filesystem::path& path);

@@ -104,6 +104,17 @@ def test_files_are_shown_as_they_are_rendered_with_what_is_behind_them(tmp_path)
     assert _core.read_channels(exr, ["A", "depth.Z"]) is None
 
 
+def test_an_alpha_that_is_not_a_number_is_refused(tmp_path, capsys):
+    path = tmp_path / "a.exr"
+    pixels = np.full((12, 20, 4), 0.5, np.float32)
+    pixels[3, 4, 3] = np.nan
+    head = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
+    OpenEXR.File(head, {"RGBA": pixels}).write(str(path))
+    assert cli.main(["compare", str(path), str(path), "-o", str(tmp_path / "b.png")]) == 1
+    assert f"{path}: texel (4, 3): found nan" in capsys.readouterr().err
+    assert not (tmp_path / "b.png").exists()
+
+
 def test_colours_say_which_is_brighter_and_the_bar_how_much():
     low, none, high = difference.coloured(np.array([-2.0, 0, 2.0]), 2.0).astype(int)
     assert low[2] > low[0]
