@@ -35,7 +35,7 @@ SIDES = np.array([16.0, 16.0, 8.0])  # mm
 TRUE = np.array([[0.01, 0.02, 0.03], [1.2, 1.0, 0.8]])  # 1/mm, sigma_a and sigma_s'
 START = (0.05, 2.0)  # the same, of all channels, from which Mitsuba goes
 SAMPLES = (16, 64)  # of a pixel, in each of Mitsuba's steps
-_STEPS, _RATE, _DECAY = 200, 0.05, 0.985
+_STEPS, _RATE = 200, 0.05
 _PER_MM = 2.0  # faces along an edge
 _NOISE = 0.003  # of a white pixel
 _PIXELS, _PHOTOGRAPHED, _BATCHES = 24, 2048, 8  # samples of a pixel, in each batch
@@ -76,7 +76,7 @@ def run(wanted: InverseRun, tell: ProgressCallback) -> dict[str, Any]:
         for samples in wanted.samples:
             title = f"prbvolpath, {samples} samples a pixel"
             tell(title)
-            how = Descent(samples, _RATE, _DECAY, wanted.steps, START, wanted.threads)
+            how = Descent(samples, _RATE, wanted.steps, START, wanted.threads)
             found = means(apart(descended, folder, how))
             rows.append({"name": title} | _judged(found, folder, wanted.device))
     return {"threads": wanted.threads, "load": round(os.getloadavg()[0], 1), "bake_s": bake_s, "rows": rows}

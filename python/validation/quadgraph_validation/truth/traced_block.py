@@ -33,13 +33,12 @@ class WantedPicture:
 
 @dataclass(frozen=True)
 class Descent:
-    """How coefficients are followed. samples: of a pixel in each step; rate: of Adam's first step; decay: that of each
-    step over the one before; steps; start: sigma_a and sigma_s', (2,), 1/mm, of all channels; threads.
+    """How coefficients are followed. samples: of a pixel in each step; rate: of Adam's steps; steps: how many; start:
+    sigma_a and sigma_s', (2,), 1/mm, of all channels; threads.
     """
 
     samples: int
     rate: float
-    decay: float
     steps: int
     start: tuple[float, float]
     threads: int
@@ -113,7 +112,6 @@ class TracedBlock:
         steps = []
         for number in range(how.steps):
             tell(number)
-            optimiser.set_learning_rate(how.rate * how.decay**number)
             for k, (scene, members) in enumerate(zip(scenes, parameters, strict=True)):
                 absorption, scattering = drjit.exp(optimiser["absorption"]), drjit.exp(optimiser["scattering"])
                 members[_EXTINCTION] = (absorption + scattering) / _SCALE
