@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import subprocess
 
 import numpy as np
@@ -110,15 +111,21 @@ def eighths(values: np.ndarray) -> list[np.ndarray]:
     return [values[side == number] for number in range(8)]
 
 
+@pytest.fixture(scope="module")
+def alone(baked):
+    """What `shown` gives of the ball that is alone, of a material and a way, which two tests ask for."""
+    return functools.cache(lambda material, way: shown(baked["alone"], {"alone": material}, ["ambient:1"], **WAYS[way]))
+
+
 @pytest.mark.parametrize("way", ["sp3", "corrected"])
 @pytest.mark.parametrize(("left", "right"), [(LOW, HIGH), (HIGH, LOW)], ids=["low", "high"])
-def test_a_body_far_from_one_of_another_index_is_as_alone(baked, way, left, right):
+def test_a_body_far_from_one_of_another_index_is_as_alone(baked, alone, way, left, right):
     """Of the left one, whose tets are those of the one that is alone; power of both."""
     both, solution = shown(baked["far"], {"left": left, "right": right}, ["ambient:1"], **WAYS[way])
-    alone, own = shown(baked["alone"], {"alone": left}, ["ambient:1"], **WAYS[way])
-    _, other = shown(baked["alone"], {"alone": right}, ["ambient:1"], **WAYS[way])
+    mine, own = alone(left, way)
+    _, other = alone(right, way)
     close = 5e-3 if way == "corrected" else 1e-3  # noise; and each takes some of the other's sky
-    means = (np.array([np.mean(each, axis=0) for each in eighths(found)]) for found in (both["left"], alone["alone"]))
+    means = (np.array([np.mean(each, axis=0) for each in eighths(found)]) for found in (both["left"], mine["alone"]))
     assert off(*means) < close
     for part in ("entered", "absorbed", "scattered_out"):
         found, wanted = getattr(solution.energy, part), getattr(own.energy, part) + getattr(other.energy, part)
