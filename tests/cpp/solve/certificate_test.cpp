@@ -77,7 +77,7 @@ TEST_CASE(
 
 TEST_CASE("walks find the same power by any importance: the solution's own, one that is wrong by two, and none") {
   for (const float scattering : {0.02f, 2.0f}) {
-    Scene scene({8, 4});
+    Scene scene({6, 3});
     gpu::Material material{};
     material.sigma_s_prime = scattering * glm::vec3(1, 0.5f, 2);
     material.sigma_a = scattering * glm::vec3(0.3f, 0.05f, 0.01f);
