@@ -48,6 +48,7 @@ class Depths:
         of_vertices = np.bincount(at, np.repeat(of_triangles, 3), count) / uses
         self._tree = cKDTree(np.concatenate([surface.vertices, corners.mean(axis=1)]))
         self._edge = np.concatenate([of_vertices, of_triangles])
+        self.least_edge = self._edge.min()  # mm
 
     def at(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Distance to the nearest sample, within a tenth, and the edge length there, (n,) mm each, of (n, 3), mm."""
@@ -118,8 +119,10 @@ class Limits:
         """
         if not self._first and self.interior.rule == "auto":
             return None
-        places = self._depths.at(vertices[tets].mean(axis=1))
         volumes = np.abs(determinants(vertices, tets)) / 6
+        if not self._first and np.mean(volumes > _SLACK * self._least_limit()) <= _FEW:
+            return None  # wherever they lie, which takes long to find
+        places = self._depths.at(vertices[tets].mean(axis=1))
         if self._first:
             self._settle(volumes, *places)
             self._settled(self.interior)
@@ -130,8 +133,16 @@ class Limits:
 
     def share_above(self, mesh: TetMesh) -> float:
         """Share of the tets that have more than twice their limit."""
-        limits = _REGULAR * self.interior.edges(*self._depths.at(mesh.vertices[mesh.tets].mean(axis=1))) ** 3
-        return float(np.mean(mesh.determinants / 6 > 2 * limits))
+        volumes = mesh.determinants / 6
+        large = np.flatnonzero(volumes > 2 * self._least_limit())
+        places = self._depths.at(mesh.vertices[mesh.tets[large]].mean(axis=1))
+        limits = _REGULAR * self.interior.edges(*places) ** 3
+        return float(np.count_nonzero(volumes[large] > 2 * limits) / len(volumes))
+
+    def _least_limit(self) -> float:
+        """No limit is below it, mm^3: edges grow with depth and with the surface's own."""
+        (edge,) = self.interior.edges(np.zeros(1), np.array([self._depths.least_edge]))
+        return float((1 - 1e-9) * _REGULAR * edge**3)
 
     def _settle(self, volumes: np.ndarray, *places: np.ndarray) -> None:
         """Make the sizes as large as the number of tets wants them."""
