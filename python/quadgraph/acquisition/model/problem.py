@@ -14,6 +14,7 @@ from quadgraph.acquisition.model.prediction import CHANNELS, Predicted
 from quadgraph.base.errors import InputError
 
 _COVERED = 0.999  # share of a pixel that the body has to cover
+_AROUND = 0.8  # and of all pixels around it: by as much of a pixel the pose may be off
 _GLOSS = 0.01  # over scattered light, from which on a pixel is left out
 _DARK = 1e-4  # of the brightest pixel, below which a prediction is not held to anything
 _HUBER = 3.0  # standard deviations, beyond which a residual counts linearly
@@ -141,7 +142,8 @@ def _counted(one: Measured, picture: Predicted, polarised: bool) -> np.ndarray:
 
 def within(picture: Predicted, polarised: bool) -> np.ndarray:
     """(h, w, 3) which pixels of a photograph are well within the body and without gloss."""
-    inside = ndimage.binary_erosion(picture.alpha > _COVERED, np.ones((3, 3)), border_value=1)
+    around = ndimage.binary_erosion(picture.alpha > _AROUND, np.ones((3, 3)), border_value=1)
+    inside = (picture.alpha > _COVERED) & around
     matt = np.ones(picture.radiance.shape, bool) if polarised else picture.gloss <= _GLOSS * picture.radiance
     return inside[..., None] & matt
 

@@ -161,7 +161,12 @@ def radiances_of(found: Subject, cameras: dict[str, dict[str, Any]], pictures: S
 
 
 def by_engine(
-    found: Subject, cameras: dict[str, dict[str, Any]], body: Path, device: str, advance: Callable[[float], None]
+    found: Subject,
+    cameras: dict[str, dict[str, Any]],
+    body: Path,
+    device: str,
+    advance: Callable[[float], None],
+    sweep_points: int = SWEEP_POINTS,
 ) -> Radiances:
     """The same by the engine, on `body`, in place of the scene's. Raises InputError, SolverError."""
     stage = core.Stage(device)
@@ -176,7 +181,7 @@ def by_engine(
             size = {each: camera[each] for each in ("width", "height")}
             size |= {"samples": 4, "transmission_roughness": 0}  # as the walks have it
             scene |= {"body": str(body.absolute()), "lights": [stated], "camera": around, "picture": size}
-            scene["solver"] = {"sweep_points": SWEEP_POINTS}
+            scene["solver"] = {"sweep_points": sweep_points}
             stage.show(core.scene_file(json.dumps(scene)).at(0))
             if not solved:
                 stage.solve()
