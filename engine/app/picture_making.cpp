@@ -66,6 +66,7 @@ SolveOptions Viewer::options_of_solve() const {
 // Whether the solution is not that of the scene that is being made, which may be seen otherwise than what is shown.
 bool Viewer::must_solve() const {
   if (!shown_ || !solved_ || (making_->settles && !solved_exactly_)) return true;
+  if (shown_->render.light_roughness() != making_->scene.render.light_roughness()) return true;
   Scene lit = *shown_;
   lit.view = making_->scene.view;
   lit.render = making_->scene.render;

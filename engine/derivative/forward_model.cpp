@@ -14,7 +14,7 @@
 #include "engine/derivative/source.h"
 #include "engine/derivative/surface.h"
 #include "engine/file/geometry.h"
-#include "engine/optics/fresnel.h"
+#include "engine/optics/surface_boundary.h"
 #include "engine/reference/row_solver.h"
 #include "shaders/material/optics.h"
 

@@ -9,8 +9,8 @@
 #include <optional>
 
 #include "engine/base/text.h"
-#include "engine/optics/fresnel.h"
 #include "engine/optics/named_materials.h"
+#include "engine/optics/surface_boundary.h"
 
 namespace quadgraph {
 namespace {

@@ -4,6 +4,7 @@
 #include <glm/matrix.hpp>
 
 #include "engine/optics/fresnel.h"
+#include "engine/optics/surface_boundary.h"
 
 namespace quadgraph {
 namespace {

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/vec2.hpp>
-#include <map>
-#include <tuple>
 
 namespace quadgraph {
 
@@ -59,51 +57,6 @@ double internal_reflectance(double mu, const OpticalSurface& surface) {
   const double sine2_outside = surface.eta * surface.eta * (1.0 - mu * mu);
   if (sine2_outside >= 1.0) return 1.0;
   return 1.0 - fresnel_transmittance(std::sqrt(1.0 - sine2_outside), surface);
-}
-
-namespace {
-
-double integrated_moment(int n, const OpticalSurface& surface) {
-  const double eta = surface.eta, critical = std::sqrt(1.0 - 1.0 / (eta * eta));
-  // R starts as a square root at the critical cosine: smooth in t, mu = critical + (1 - critical) t^2. Simpson's rule.
-  constexpr int intervals = 1024;
-  double sum = 0;
-  for (int i = 0; i <= intervals; ++i) {
-    const double t = static_cast<double>(i) / intervals;
-    const double mu = critical + (1.0 - critical) * t * t;
-    const double weight = i == 0 || i == intervals ? 1.0 : (i % 2 == 1 ? 4.0 : 2.0);
-    sum += weight * internal_reflectance(mu, surface) * std::pow(mu, n) * 2.0 * t;
-  }
-  return std::pow(critical, n + 1) / (n + 1) + (1.0 - critical) * sum / (3.0 * intervals);
-}
-
-}  // namespace
-
-// Kept by surface and order: solves ask for those of their bodies over and over.
-double fresnel_moment(int n, const OpticalSurface& surface) {
-  const Coat& coat = surface.coat;
-  if (surface.eta == 1.0 && coat.share == 0) return 0.0;
-  constexpr std::size_t most_kept = 256;
-  thread_local std::map<std::tuple<int, double, float, float>, double> kept;
-  const std::tuple key(n, surface.eta, coat.share, coat.share == 0 ? 1 : coat.eta);
-  const auto found = kept.find(key);
-  if (found != kept.end()) return found->second;
-  if (kept.size() == most_kept) kept.clear();
-  return kept[key] = integrated_moment(n, surface);
-}
-
-double diffuse_transmittance(const OpticalSurface& surface) {
-  return surface.eta * surface.eta * (1.0 - 2.0 * fresnel_moment(1, surface));
-}
-
-double radiance_norm(const OpticalSurface& surface) {
-  constexpr int steps = 4096;
-  double sum = 0;
-  for (int i = 0; i < steps; ++i) {
-    const double cos_o = (i + 0.5) / steps;
-    sum += fresnel_transmittance(cos_o, surface) * cos_o;
-  }
-  return 2 * std::numbers::pi * sum / steps;
 }
 
 double internal_diffuse_reflectance(double eta) {

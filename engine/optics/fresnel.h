@@ -1,5 +1,5 @@
-// Fresnel quantities of a smooth surface, bare or under a coat. A number in place of an OpticalSurface is the index of
-// refraction of a bare one, inside / outside.
+// Fresnel quantities of a surface as if it were smooth, bare or under a coat. A number in place of an OpticalSurface is
+// the index of refraction of a bare one, inside / outside.
 #pragma once
 
 #include "engine/optics/optical_surface.h"
@@ -14,17 +14,6 @@ double fresnel_transmittance(double cos_i, const OpticalSurface& surface);
 
 // Unpolarised reflectance from inside at the inside cosine `mu` in [0, 1]; 1 under total reflection.
 double internal_reflectance(double mu, const OpticalSurface& surface);
-
-// R_n, the integral of internal_reflectance mu^n over mu from 0 to 1; to 1e-10.
-double fresnel_moment(int n, const OpticalSurface& surface);
-
-// Share of uniform light from outside that enters, the integral of 2 mu fresnel_transmittance over the outside cosine:
-// by reciprocity eta^2 (1 - 2 R_1).
-double diffuse_transmittance(const OpticalSurface& surface);
-
-// Integral of F_t(cos) cos over the hemisphere, sr: what exitance is divided by to give radiance along F_t, so
-// that it integrates back to the exitance (docs/physics.md, "Gathered radiance"). pi for eta = 1.
-double radiance_norm(const OpticalSurface& surface);
 
 // Internal diffuse reflectance by the published polynomial: -1.440/eta^2 + 0.710/eta + 0.668 + 0.0636 eta for eta > 1,
 // 0 for eta = 1 [QG, PG; Groenhuis et al. 1983].

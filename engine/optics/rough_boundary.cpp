@@ -5,27 +5,20 @@
 #include <functional>
 
 #include "engine/optics/fresnel.h"
-#include "shaders/shared/microfacets.h"
+#include "engine/optics/visible_facets.h"
 
 namespace quadgraph {
 namespace {
 
-constexpr int facets = 16;  // of each of the two numbers that a facet is drawn by
-
 // Of facets that reflect so much of light by its cosine with them.
 double mean_reflectance(double cosine, double alpha, const std::function<double(double)>& reflected) {
   if (alpha == 0.0) return reflected(cosine);
-  const float z = std::max(static_cast<float>(cosine), gpu::LEAST_SEEN_COSINE), rough = static_cast<float>(alpha);
-  const glm::vec3 way(std::sqrt(std::max(1 - z * z, 0.0f)), 0, z);
-  double sum = 0;
-  for (int i = 0; i < facets; ++i) {
-    for (int j = 0; j < facets; ++j) {
-      const glm::vec3 facet = gpu::visible_facet(way, rough, (glm::vec2(i, j) + 0.5f) / static_cast<float>(facets));
-      const double seen = std::clamp(static_cast<double>(glm::dot(way, facet)), 0.0, 1.0);
-      sum += reflected(seen) * static_cast<double>(gpu::gone_for_good(way, facet, rough));
-    }
-  }
-  return sum / (facets * facets);
+  const glm::vec3 way = way_at(cosine);
+  const auto rough = static_cast<float>(alpha);
+  return mean_over_facets<double>(way, rough, [&](const glm::vec3& facet) {
+    const double seen = std::clamp(static_cast<double>(glm::dot(way, facet)), 0.0, 1.0);
+    return reflected(seen) * static_cast<double>(gpu::gone_for_good(way, facet, rough));
+  });
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "engine/optics/fresnel.h"
+#include "engine/optics/surface_boundary.h"
 #include "engine/reference/entering.h"
 #include "shaders/shared/creases.h"
 #include "shaders/surface/near_return.h"

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "engine/file/geometry.h"
-#include "engine/optics/fresnel.h"
+#include "engine/optics/surface_boundary.h"
 
 namespace quadgraph {
 namespace {

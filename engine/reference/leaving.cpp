@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/optics/fresnel.h"
+#include "engine/optics/surface_boundary.h"
 #include "engine/reference/entering.h"
 #include "shaders/gather/gather_shared.h"
 

@@ -134,7 +134,7 @@ void Engine::set_materials(std::span<const BodyMaterial> given) {
   std::vector<OpticalSurface> surfaces;
   for (const BodyMaterial& material : materials) {
     eta.push_back(material.eta);
-    surfaces.emplace_back(double{material.eta}, material.coat);
+    surfaces.emplace_back(double{material.eta}, material.coat, material.roughness);
   }
   for (std::uint32_t i = 0; i < levels.size(); ++i) {
     simulation.set_optical(i, at_nodes(levels[i], materials), eta,

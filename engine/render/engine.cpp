@@ -47,12 +47,12 @@ const Sphere& Engine::bounds() const {
 
 void Engine::set_material(std::string_view text) {
   const gpu::Material material = parse_material(text);
-  set_material(material, stated_coat(text));
+  set_material(material, {stated_coat(text), stated_roughness(text).value_or(default_roughness)});
   implementation_->material = text;
   implementation_->of_text = material;
 }
 
-void Engine::set_material(const gpu::Material& material, const Coat& coat) {
+void Engine::set_material(const gpu::Material& material, const Finish& finish) {
   const auto turn = implementation_->in_use.take();
   auto& self = *implementation_;
   check_material(material);
@@ -61,7 +61,7 @@ void Engine::set_material(const gpu::Material& material, const Coat& coat) {
   self.material = material_text(material);
   self.certainty = {};
   self.body_roughness.reset();
-  self.set_surfaces({{double{material.eta}, coat}});
+  self.set_surfaces({{double{material.eta}, finish.coat, finish.roughness}});
 }
 
 void Engine::set_optical(std::uint32_t level, std::span<const gpu::Optical> optical, float eta,
@@ -74,7 +74,7 @@ void Engine::set_optical(std::uint32_t level, std::span<const gpu::Optical> opti
   self.material = "coefficients per node, eta=" + number_text(eta);
   self.certainty = {};
   self.body_roughness.reset();
-  self.set_surfaces({{double{eta}, coat}});
+  self.set_surfaces({{double{eta}, coat, default_roughness}});
 }
 
 void Engine::set_optical(const OpticalGrid& grid, const Coat& coat) {
@@ -86,7 +86,7 @@ void Engine::set_optical(const OpticalGrid& grid, const Coat& coat) {
   self.material = "coefficients on a grid, eta=" + number_text(grid.eta);
   self.certainty = {};
   self.body_roughness.reset();
-  self.set_surfaces({{double{grid.eta}, coat}});
+  self.set_surfaces({{double{grid.eta}, coat, default_roughness}});
 }
 
 void Engine::set_certainty(Certainty certainty) {
@@ -152,6 +152,14 @@ void Engine::set_normal_map(const std::optional<NormalMap>& map) {
   self.facets_said = map;
   self.facets_stale = true;
   self.irradiance_stale = self.irradiance_stale || !self.lights.empty();
+}
+
+void Engine::set_light_roughness(std::optional<float> alpha) {
+  const auto turn = implementation_->in_use.take();
+  auto& self = *implementation_;
+  check_options({.transmission_roughness = alpha});
+  self.light_roughness = alpha;
+  self.set_surfaces(self.said_surfaces);
 }
 
 PresentScene Engine::present_scene() const {

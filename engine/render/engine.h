@@ -70,6 +70,8 @@ struct RenderOptions {
   std::optional<float> roughness{};
   // The same of the surface for light that comes through it, in transmission_range; empty: the same.
   std::optional<float> transmission_roughness{};
+  // By which light goes in and out in the solve of such a picture (Engine::set_light_roughness).
+  std::optional<float> light_roughness() const { return transmission_roughness ? transmission_roughness : roughness; }
   Radiance radiance = Radiance::automatic;
   Show show{};                // what is to be seen
   bool ground = false;        // with a shadow where the body stands, which counts as coverage without light
@@ -119,7 +121,7 @@ class Engine {
 
   // Text as parse_material reads it, or a material. Throws InputError.
   void set_material(std::string_view text);
-  void set_material(const gpu::Material& material, const Coat& coat = {});
+  void set_material(const gpu::Material& material, const Finish& finish = {.roughness = default_roughness});
 
   // A material for each body of a file that names them, in its order. Throws InputError where they are not as many, or
   // of several indices of refraction.
@@ -153,6 +155,11 @@ class Engine {
   // By which facets light enters: those of this map; none: of the file's own normal texture, where it has one.
   // A strength of 0 is none of either. Throws InputError as check_options.
   void set_normal_map(const std::optional<NormalMap>& map);
+
+  // GGX alpha of the surface by which light goes in and out in solves to come, in transmission_range, 0 for a smooth
+  // one, as it is at first; empty: as the material says, default_roughness where it says none. Shortest paths know
+  // smooth ones alone. Throws InputError as check_options.
+  void set_light_roughness(std::optional<float> alpha);
 
   PresentScene present_scene() const;
 

@@ -71,13 +71,15 @@ struct Engine::Implementation {
   std::optional<BodyRoughness> body_roughness;  // of the materials of several bodies
   std::string index_warning;                    // the same, of the report
   std::vector<Light> lights;
-  std::vector<OpticalSurface> surfaces{1};  // of the material, or of those of all bodies
-  bool shadows_stale = false;               // they are not those of the present lights and shape
-  bool irradiance_stale = false;            // nor is q on the levels
-  bool irradiance_rough = false;            // q is that of a frame in motion
-  bool irradiance_given = false;            // q is not that of lights
-  std::optional<NormalMap> facets_said;     // by which light is to enter
-  bool facets_stale = true;                 // faces do not lean by it yet
+  std::vector<OpticalSurface> said_surfaces{1};  // by the material, or those of all bodies
+  std::optional<float> light_roughness = 0.0f;   // in place of what these say
+  std::vector<OpticalSurface> surfaces{1};       // so
+  bool shadows_stale = false;                    // they are not those of the present lights and shape
+  bool irradiance_stale = false;                 // nor is q on the levels
+  bool irradiance_rough = false;                 // q is that of a frame in motion
+  bool irradiance_given = false;                 // q is not that of lights
+  std::optional<NormalMap> facets_said;          // by which light is to enter
+  bool facets_stale = true;                      // faces do not lean by it yet
   SolveOptions options;
   std::optional<SolveOptions> again;  // what was asked for, where the last solve is one of those of a mean
   std::optional<SolveReport> report;
@@ -164,9 +166,13 @@ struct Engine::Implementation {
 
   // Of the material. What enters the surface depends on these alone.
   void set_surfaces(std::vector<OpticalSurface> found) {
-    std::vector<Coat> coats;
-    for (const OpticalSurface& surface : found) coats.push_back(surface.coat);
-    if (simulation) simulation->set_coats(coats);
+    said_surfaces = found;
+    std::vector<Finish> finishes;
+    for (OpticalSurface& surface : found) {
+      surface.roughness = light_roughness.value_or(surface.roughness);
+      finishes.push_back({surface.coat, surface.roughness});
+    }
+    if (simulation) simulation->set_finishes(finishes);
     if (found == surfaces) return;
     surfaces = std::move(found);
     stale();
@@ -250,7 +256,7 @@ struct Engine::Implementation {
     if (shadows_stale) cast_shadows();
     SolveReport found;
     found.method = Method::shortest_path;
-    found.path = paths.solve(mesh, moved ? &motion.rest() : nullptr, shadows, surfaces[0], wanted.path);
+    found.path = paths.solve(mesh, moved ? &motion.rest() : nullptr, shadows, surfaces[0].smooth(), wanted.path);
     return found;
   }
 

@@ -24,7 +24,7 @@ Radiance Engine::Implementation::draw_surface(const Camera& camera, const Render
     add_all(rasteriser.run(PathInput{.mesh = mesh,
                                      .field = paths.field(),
                                      .shadows = shadows,
-                                     .surface = surfaces[0],
+                                     .surface = surfaces[0].smooth(),
                                      .roughness = roughness(render),
                                      .placed_roughness = there,
                                      .placed_normals = normals,

@@ -4,7 +4,7 @@
 #include <optional>
 #include <utility>
 
-#include "engine/optics/fresnel.h"
+#include "engine/optics/surface_boundary.h"
 #include "engine/path/cell_costs.h"
 #include "engine/path/exit_field.h"
 #include "engine/path/path_pass.h"

@@ -252,8 +252,8 @@ void add_picture(OptionTable& table) {
        .keyword = "transmission_roughness",
        .metavar = "ALPHA",
        .range = transmission_range,
-       .help = "roughness of the surface for light that comes out of it, GGX alpha, " + transmission_range.text() +
-               "; 0: smooth; default: the roughness"});
+       .help = "roughness of the surface for light that goes in and comes out, GGX alpha, " +
+               transmission_range.text() + "; 0: smooth; default: the roughness"});
   table.text(
       OptionKind::text,
       {.name = "normal-map",

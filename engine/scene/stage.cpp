@@ -64,6 +64,7 @@ void Stage::show(const Scene& scene) {
     scene_.cuts = scene.cuts;
   }
   engine_->set_normal_map(scene.render.normal_map);
+  engine_->set_light_roughness(scene.render.light_roughness());
   scene_ = scene;
 }
 

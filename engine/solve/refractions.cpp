@@ -6,8 +6,8 @@
 #include <string>
 
 #include "engine/base/error.h"
-#include "engine/optics/fresnel.h"
 #include "engine/optics/rough_boundary.h"
+#include "engine/optics/surface_boundary.h"
 #include "engine/reference/operator.h"
 
 namespace quadgraph {
@@ -18,9 +18,11 @@ double square_of_step(std::uint32_t step) {
   return root * root;
 }
 
-// Refraction::reflectance of that surface.
-std::array<float, gpu::REFLECTANCE_VALUES> reflectances(const OpticalSurface& surface) {
-  std::array<float, gpu::REFLECTANCE_VALUES> found{};
+// Refraction::reflectance of that surface, and behind it, of a rough one, its rough_boundary.
+constexpr std::size_t table_values = gpu::REFLECTANCE_VALUES + gpu::BOUNDARY_VALUES;
+
+std::array<float, table_values> reflectances(const OpticalSurface& surface) {
+  std::array<float, table_values> found{};
   constexpr std::uint32_t row = gpu::REFLECTANCE_ROW;
   for (std::uint32_t k = 0; k < row * row; ++k) {
     found[k] = static_cast<float>(rough_reflectance(square_of_step(k % row), square_of_step(k / row), surface));
@@ -28,11 +30,21 @@ std::array<float, gpu::REFLECTANCE_VALUES> reflectances(const OpticalSurface& su
   for (std::uint32_t k = 0; k < row; ++k) {
     found[row * row + k] = static_cast<float>(coat_reflectance(square_of_step(k), surface));
   }
+  if (surface.rough()) std::ranges::copy(rough_boundary(surface), found.begin() + gpu::REFLECTANCE_VALUES);
+  return found;
+}
+
+// boundary: address of its rough_boundary.
+gpu::OpticalSurface on_device(const OpticalSurface& surface, std::uint64_t boundary) {
+  gpu::OpticalSurface found = single_precision(surface);
+  if (!surface.rough()) return found;
+  found.roughness = facet_roughness(surface);
+  found.boundary = {static_cast<std::uint32_t>(boundary), static_cast<std::uint32_t>(boundary >> 32)};
   return found;
 }
 
 gpu::Refraction refraction(const OpticalSurface& surface, std::uint32_t entering, std::uint64_t reflectance) {
-  return {.surface = single_precision(surface),
+  return {.surface = on_device(surface, reflectance + gpu::REFLECTANCE_VALUES * sizeof(float)),
           .transmitted = static_cast<float>(diffuse_transmittance(surface)),
           .kept = static_cast<float>(2 * fresnel_moment(1, surface)),
           .radiance_norm = static_cast<float>(radiance_norm(surface)),
@@ -71,7 +83,7 @@ Refractions::Refractions(device::Device& device, std::uint32_t bodies)
     : device_(device),
       surfaces_(bodies),
       on_device_(device, bodies * sizeof(gpu::Refraction), device::Place::device, "material/refraction of bodies"),
-      reflectances_(device, bodies * gpu::REFLECTANCE_VALUES * sizeof(float), device::Place::device,
+      reflectances_(device, bodies * table_values * sizeof(float), device::Place::device,
                     "material/reflectance of bodies"),
       boundaries_on_host_(bodies * value_count<Method> * value_count<Source> * value_count<Model>),
       boundaries_on_device_(device, boundaries_on_host_.size() * sizeof(gpu::Boundary), device::Place::device,
@@ -82,7 +94,7 @@ Refractions::Refractions(device::Device& device, std::uint32_t bodies)
 void Refractions::write() {
   const std::vector<OpticalSurface> different = different_surfaces(surfaces_);
   std::vector<gpu::Refraction> kinds, bodies;
-  std::vector<std::array<float, gpu::REFLECTANCE_VALUES>> tables;
+  std::vector<std::array<float, table_values>> tables;
   for (const OpticalSurface& surface : different) {
     const auto number = static_cast<std::uint32_t>(kinds.size());
     tables.push_back(reflectances(surface));
@@ -120,14 +132,16 @@ bool Refractions::set(std::span<const float> eta) {
   return take(std::move(wanted));
 }
 
-bool Refractions::set_coats(std::span<const Coat> coats) {
-  if (coats.size() > 1 && coats.size() != surfaces_.size()) {
-    throw InputError("coats: " + std::to_string(coats.size()) + " found, one for all, or one for each of " +
+bool Refractions::set_finishes(std::span<const Finish> finishes) {
+  if (finishes.size() > 1 && finishes.size() != surfaces_.size()) {
+    throw InputError("finishes: " + std::to_string(finishes.size()) + " found, one for all, or one for each of " +
                      std::to_string(surfaces_.size()) + " bodies wanted");
   }
   std::vector<OpticalSurface> wanted = surfaces_;
   for (std::size_t i = 0; i < wanted.size(); ++i) {
-    wanted[i].coat = coats.empty() ? Coat{} : coats[coats.size() == 1 ? 0 : i];
+    const Finish finish = finishes.empty() ? Finish{} : finishes[finishes.size() == 1 ? 0 : i];
+    wanted[i].coat = finish.coat;
+    wanted[i].roughness = finish.roughness;
   }
   return take(std::move(wanted));
 }

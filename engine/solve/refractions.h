@@ -1,4 +1,4 @@
-// The smooth surface of each body of a file, by its index of refraction and its coat, as passes read it.
+// The surface of each body of a file, by its index of refraction and its coat, as passes read it.
 #pragma once
 
 #include <cstdint>
@@ -36,8 +36,9 @@ class Refractions {
   // check_eta; then all stays as it was.
   bool set(std::span<const float> eta);
 
-  // The same of coats; those of bodies that nothing is said of are none. Throws InputError on another number of them.
-  bool set_coats(std::span<const Coat> coats);
+  // The same of finishes; surfaces that nothing is said of are bare and smooth. Throws InputError on another number of
+  // them.
+  bool set_finishes(std::span<const Finish> finishes);
 
   std::vector<float> eta() const;                                         // by body
   std::span<const OpticalSurface> surfaces() const { return surfaces_; }  // the same
@@ -57,7 +58,7 @@ class Refractions {
   device::Device& device_;
   std::vector<OpticalSurface> surfaces_;
   device::Buffer on_device_;
-  device::Buffer reflectances_;  // REFLECTANCE_VALUES for each surface that differs from those before
+  device::Buffer reflectances_;  // and boundaries, for each surface that differs from those before
   // By body, of each method, source and model, which keep their places: what a solve takes of memory does not hang on
   // the solves before it.
   std::vector<gpu::Boundary> boundaries_on_host_;

@@ -68,8 +68,8 @@ void Simulation::set_etendue(std::span<const float> by_body) {
   if (self.correction) self.correction->forget();
 }
 
-void Simulation::set_coats(std::span<const Coat> coats) {
-  if (implementation_->refractions.set_coats(coats)) implementation_->disassemble();
+void Simulation::set_finishes(std::span<const Finish> finishes) {
+  if (implementation_->refractions.set_finishes(finishes)) implementation_->disassemble();
 }
 
 void Simulation::set_edits(std::span<const Edit> edits) {

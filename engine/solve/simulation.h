@@ -84,9 +84,9 @@ class Simulation {
   // is set, and after set_material. Where another it is set behind set_optical on all levels.
   void set_etendue(std::span<const float> by_body);
 
-  // What coats the surface of each body, one for all, or none; whatever is set besides leaves it. Throws InputError on
-  // another number of them.
-  void set_coats(std::span<const Coat> coats);
+  // What the surface of each body is like, one for all, or none, which is bare and smooth; whatever is set besides
+  // leaves it. Throws InputError on another number of them.
+  void set_finishes(std::span<const Finish> finishes);
 
   // By which angles light scatters, of what set_optical has set on all levels.
   void set_angles(const ScatteringAngles& angles);

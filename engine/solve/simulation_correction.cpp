@@ -6,12 +6,14 @@
 namespace quadgraph {
 namespace {
 
-// How much indices differ from those before, by body, the most of any; 1 where there were none, or another coat.
+// How much indices differ from those before, by body, the most of any; 1 where there were none, or they
+// are finished otherwise.
 double index_change(std::span<const OpticalSurface> before, std::span<const OpticalSurface> now) {
   double most = before.empty() ? 1 : 0;
   for (std::size_t i = 0; i < before.size(); ++i) {
     const double change = std::abs(now[i].eta - before[i].eta) / now[i].eta;
-    most = std::max(most, now[i].coat == before[i].coat ? change : 1);
+    const bool alike = now[i].coat == before[i].coat && now[i].roughness == before[i].roughness;
+    most = std::max(most, alike ? change : 1);
   }
   return most;
 }

@@ -28,6 +28,11 @@ double one_index(std::span<const float> eta, const std::vector<std::string>& bod
 
 void check_bare(std::span<const OpticalSurface> surfaces) {
   for (const OpticalSurface& surface : surfaces) {
+    if (surface.rough()) {
+      throw InputError("derivatives: a surface of roughness " + number_text(surface.roughness) +
+                       " found, allowed is a smooth one: Engine.set_light_roughness(0), or a scene whose picture has a "
+                       "transmission_roughness of 0");
+    }
     if (surface.coat.share == 0) continue;
     throw InputError("derivatives: coat=" + number_text(surface.coat.share) +
                      " found, allowed is a bare surface: leave coat= out of the material");

@@ -222,8 +222,8 @@ void bind_scene_setters(py::class_<Engine>& bound) {
           },
           py::arg("list"),
           "Moves body and display mesh from where they lie in the file: a list of dicts with 'type' twist, bend, "
-          "taper, "
-          "stretch, transform, lattice, cage or displaced and the fields of docs/deformation.md (mm, degrees), or its "
+          "taper, stretch, transform, lattice, cage or displaced and the fields of docs/deformation.md (mm, degrees), "
+          "or its "
           "JSON text; [] puts all back exactly. Material and what the body sees of itself follow. Raises InputError, "
           "and moves nothing.");
 }
@@ -262,8 +262,8 @@ void bind_level_setters(py::class_<Engine>& bound) {
           },
           py::arg("level"), py::arg("positions"),
           "Moves the vertices of a level, (n_v, 3) mm, and the material with them; light given by set_irradiance "
-          "stays, "
-          "lights are evaluated again by update_irradiance. Raises InputError, and moves nothing, where a tet would be "
+          "stays, lights are evaluated again by update_irradiance. Raises InputError, and moves nothing, where a tet "
+          "would be "
           "turned inside out.");
 }
 
@@ -285,8 +285,8 @@ void bind_shortest_path(py::class_<Engine>& bound) {
           },
           py::arg("sigma_s_prime"), py::arg("sigma_a"), py::arg("spacing"), py::arg("first"), py::arg("eta"),
           "Coefficients (nz, ny, nx, 3), 1/mm, at points `spacing` (3,) mm apart along x, y, z from `first` (3,) on, "
-          "in "
-          "the body at rest: what shortest-path takes in place of a material. The other methods keep theirs.")
+          "in the body at rest: what shortest-path takes in place of a material. The other methods keep theirs.")
+      .def("set_light_roughness", &Engine::set_light_roughness, py::arg("alpha"), "GGX; None: the material's.")
       .def(
           "set_cuts",
           [](Engine& engine, const std::string& json) {

@@ -2,7 +2,7 @@
 #include <pybind11/stl.h>
 
 #include "engine/base/error.h"
-#include "engine/optics/fresnel.h"
+#include "engine/optics/surface_boundary.h"
 #include "engine/reference/radiance.h"
 #include "engine/reference/reference.h"
 #include "engine/reference/source_walk.h"
@@ -161,6 +161,32 @@ py::tuple coefficients_at_nodes(const QuadGraph& graph, std::uint32_t level, con
 
 }  // namespace
 
+namespace {
+
+// What surfaces do to light, as solves know it.
+void bind_boundaries(py::module_& module) {
+  module.def("boundary", &boundary_dict, py::arg("method"), py::arg("source"), py::arg("model"), py::arg("eta"),
+             "k11, k12, k22, source, reflected (engine/optics/boundary.h).");
+  module.def(
+      "fresnel_moment", [](int n, double eta, float roughness) { return fresnel_moment(n, {eta, {}, roughness}); },
+      py::arg("n"), py::arg("eta"), py::arg("roughness") = 0.0f,
+      "R_n: integral of the internal reflectance times mu^n over the inside cosine, of a surface of GGX alpha "
+      "`roughness`.");
+  module.def(
+      "rough_boundary",
+      [](double eta, float roughness) {
+        const RoughBoundary found = rough_boundary({eta, {}, roughness});
+        return std::vector<float>(found.begin(), found.end());
+      },
+      py::arg("eta"), py::arg("roughness"),
+      "What a surface of GGX alpha `roughness` mirrors, at the squares of 32 even steps of the outside cosine; the "
+      "mean "
+      "inside cosine of what enters, at the same; what it mirrors at 128 even steps of the inside cosine "
+      "(engine/optics/surface_boundary.h).");
+}
+
+}  // namespace
+
 void bind_reference(py::module_& module) {
   const SolveOptions usual = reference_options();
   module.def(
@@ -209,11 +235,7 @@ void bind_reference(py::module_& module) {
       py::arg("graph"), py::arg("level"), py::arg("method"),
       "How a device stores the entries of the operator: 'packed', with a shared exponent, or 'plain', in single "
       "precision.");
-  module.def("boundary", &boundary_dict, py::arg("method"), py::arg("source"), py::arg("model"), py::arg("eta"),
-             "k11, k12, k22, source, reflected (engine/optics/boundary.h).");
-  module.def(
-      "fresnel_moment", [](int n, double eta) { return fresnel_moment(n, eta); }, py::arg("n"), py::arg("eta"),
-      "R_n: integral of the internal reflectance times mu^n over the inside cosine.");
+  bind_boundaries(module);
 }
 
 }  // namespace quadgraph::python

@@ -2,7 +2,7 @@
 #ifndef QUADGRAPH_FACETS_GLSL
 #define QUADGRAPH_FACETS_GLSL
 
-#include "shared/microfacets.h"
+#include "material/facet_frame.glsl"
 #include "shared/random.h"
 
 struct Facets {
@@ -26,11 +26,10 @@ vec3 facet_seen(inout Facets facets, vec3 n, vec3 outward, out vec3 towards, out
   vec2 u = vec2(spread_number(facets.start + facets.drawn, facets.number, 0u),
                 spread_number(facets.start + facets.drawn, facets.number, 1u));
   facets.drawn += 2u;
-  // Not frame_about, which leaps where n.z is 0: there lie sides of boxes, and rounding would choose their facets.
-  vec3 across = normalize(cross(abs(n.x) < 0.5 ? vec3(1, 0, 0) : vec3(0, 1, 0), n)), up = cross(n, across);
-  towards = normalize(vec3(dot(outward, across), dot(outward, up), max(dot(outward, n), LEAST_SEEN_COSINE)));
+  FacetFrame frame = facet_frame(n);
+  towards = into_frame(frame, outward);
   local = visible_facet(towards, facets.alpha, u);
-  return local.x * across + local.y * up + local.z * n;
+  return out_of_frame(frame, local);
 }
 
 #endif

@@ -42,10 +42,13 @@ void main() {
   bool through = push.through == 1u;
   uint parts = through ? VIEW_PARTS : 1u;
   GatherScales scale = through ? push.scale : GatherScales(uvec2(0));
+  OpticalSurface surface = surface_of(BODY.face_kinds, face);
   vec3 exitance = vec3(0);
   for (uint node = 0u; node < LAMBERTIAN_NODES; ++node) {
     vec3 incoming = lambertian_incoming(2u * node + (node >> 1u), normal, tangent);
-    exitance += LAMBERTIAN_W[node] * leaving(face, vec3(1.0 / 3.0), -incoming, normal, scale, SMOOTH, parts).radiance;
+    float lets_out = surface_transmittance(sqrt(LAMBERTIAN_U[node]), surface);
+    Facets facets = Facets(surface.roughness, hash(face), node, 0u, lets_out);
+    exitance += LAMBERTIAN_W[node] * leaving(face, vec3(1.0 / 3.0), -incoming, normal, scale, facets, parts).radiance;
   }
   push.exitance.at[face] = PI * exitance;
 }

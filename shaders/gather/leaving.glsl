@@ -42,7 +42,7 @@ vec3 scaled(vec3 radiance, uvec3 ids, vec3 l, GatherScales scale, float radiance
 // surface is rough. starts: whether the view ray starts there.
 float let_out(inout Facets facets, vec3 outward, Refraction body, bool starts, inout vec3 n) {
   if (!is_rough(facets) || !reflects(body.surface)) {
-    return fresnel_transmittance(clamp(dot(outward, n), 0.0, 1.0), body.surface);
+    return surface_transmittance(clamp(dot(outward, n), 0.0, 1.0), body.surface);
   }
   vec3 towards, local;
   n = facet_seen(facets, n, outward, towards, local);

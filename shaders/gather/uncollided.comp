@@ -101,10 +101,6 @@ uint quarter_at(uint face, uint v) {
   return v == ids.x ? 0u : v == ids.y ? 1u : 2u;
 }
 
-float inside_cosine(float cosine, float eta) {
-  return max(sqrt(max(1.0 - (1.0 - cosine * cosine) / (eta * eta), 0.0)), LEAST_COSINE);
-}
-
 // Unit, of the facets of a face; its own where none lean.
 vec3 facet_of(uint face, vec3 normal) {
   uvec3 ids = BODY.faces.at[face];
@@ -114,10 +110,9 @@ vec3 facet_of(uint face, vec3 normal) {
 }
 
 // Fluence behind a face that `q` enters by, of light that travels along `incoming` outside.
-vec3 entry_fluence(uint face, vec3 q, vec3 incoming, vec3 normal, float eta) {
-  vec3 facet = facet_of(face, normal);
-  if (facet == normal) return q / inside_cosine(min(-dot(incoming, normal), 1.0), eta);
-  return q / max(-dot(refracted_by_facet(incoming, normal, facet, eta), normal), LEAST_COSINE);
+vec3 entry_fluence(uint face, vec3 q, vec3 incoming, vec3 normal, OpticalSurface surface) {
+  vec3 inside = goes_in(incoming, normal, facet_of(face, normal), surface);
+  return q / max(-dot(inside, normal), LEAST_COSINE);
 }
 
 // Light at a surface vertex from the open faces around it that it enters by. Returns whether there are any.
@@ -130,8 +125,8 @@ bool lit_at_surface(uint beam, uint v, vec3 incoming, bool directed, out vec3 en
     float size = length(normal);
     if (directed && dot(incoming, normal) >= 0.0) continue;
     vec3 q = q_at(beam, face, quarter_at(face, v));
-    float eta = eta_behind(BODY.face_kinds, face);
-    entry += size * (directed ? entry_fluence(face, q, incoming, normal / size, eta) : q);
+    OpticalSurface surface = surface_of(BODY.face_kinds, face);
+    entry += size * (directed ? entry_fluence(face, q, incoming, normal / size, surface) : q);
     area += size;
   }
   entry = area > 0.0 ? entry / area : vec3(0);
@@ -163,14 +158,14 @@ bool has_direction(BeamRecord way) {
 }
 
 // Where the light of a beam entered that reaches a vertex; `incoming`: the way it travels outside, if it has a direction;
-// eta: of the surface that the straight way ends at.
-Met way_in(uint v, bool directed, vec3 incoming, out float eta) {
+// surface: the one that the straight way ends at.
+Met way_in(uint v, bool directed, vec3 incoming, out OpticalSurface surface) {
   Met met = back_to_surface(v, directed ? -incoming : surface_normal(push.nearest.at[v]));
-  eta = met.found ? eta_behind(BODY.face_kinds, met.face) : 1.0;
-  if (!directed || eta == 1.0) return met;
+  if (met.found) surface = surface_of(BODY.face_kinds, met.face);
+  if (!directed || !met.found || surface.eta == 1.0) return met;
   // By the normal where the straight way ends one knows how the light was bent.
   vec3 normal = normal_of(met.face);
-  return back_to_surface(v, -refracted_by_facet(incoming, normal, facet_of(met.face, normal), eta));
+  return back_to_surface(v, -goes_in(incoming, normal, facet_of(met.face, normal), surface));
 }
 
 Light light_of(uint beam, uint v) {
@@ -181,16 +176,16 @@ Light light_of(uint beam, uint v) {
   vec3 entry;
   bool at_surface = v < push.surface_vertex_count && lit_at_surface(beam, v, incoming, directed, entry);
   if (at_surface && directed) return Light(entry, vec3(0));
-  float eta;
+  OpticalSurface surface;
   Met met = Met(true, 0u, 0u, vec3(0));
   if (at_surface) {
     met.face = push.face_incidence.at[push.face_offset.at[v]];
   } else {
-    met = way_in(v, directed, incoming, eta);
+    met = way_in(v, directed, incoming, surface);
     if (!met.found) return NO_LIGHT;
     entry = q_at(beam, met.face, met.quarter);
   }
-  if (directed) return Light(entry_fluence(met.face, entry, incoming, normal_of(met.face), eta), met.tau);
+  if (directed) return Light(entry_fluence(met.face, entry, incoming, normal_of(met.face), surface), met.tau);
   Lambertian light = bundle(way.kind, met.face);
   vec3 whole = fluence_below(light, vec3(0));
   return Light(whole * entry, at_surface ? vec3(0) : -log(fluence_below(light, met.tau) / whole));

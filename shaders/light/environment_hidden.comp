@@ -42,7 +42,7 @@ vec3 hidden_from(uint face, LightShape shape) {
   for (uint k = row.x; k < row.y; ++k) {
     vec3 way = normalize(place_of(push.entries.at[k]).centre - own.centre);
     float cosine = clamp(dot(way, own.normal), 0.0, 1.0);
-    sum += fresnel_transmittance(cosine, surface) * environment_at(shape, ENVIRONMENT_RAYS, way);
+    sum += surface_transmittance(cosine, surface) * environment_at(shape, ENVIRONMENT_RAYS, way);
   }
   return 3.14159265 / push.rays * sum;
 }

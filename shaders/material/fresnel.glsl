@@ -53,7 +53,7 @@ float roughness_of_leaving(float alpha, OpticalSurface surface) {
   return min(sqrt(mix(alpha * alpha, below * below + above * above, surface.coat)), 1.0);
 }
 
-// As a surface is, coated in parts.
+// As a smooth surface is, or a facet of a rough one, coated in parts.
 float fresnel_reflectance(float cos_i, OpticalSurface surface) {
   float bare = fresnel_reflectance(cos_i, surface.eta);
   return surface.coat == 0.0 ? bare : mix(bare, coated_reflectance(cos_i, surface), surface.coat);
@@ -67,6 +67,32 @@ float fresnel_transmittance(float cos_i, OpticalSurface surface) {
 float internal_reflectance(float cosine, OpticalSurface surface) {
   float sin_o_squared = surface.eta * surface.eta * (1.0 - cosine * cosine);
   return sin_o_squared >= 1.0 ? 1.0 : fresnel_reflectance(sqrt(1.0 - max(sin_o_squared, 0.0)), surface);
+}
+
+// Of a rough surface at `place`, from 0 to 1, of `steps` even ones that begin with number `first`.
+float of_boundary(OpticalSurface surface, uint first, uint steps, float place) {
+  float at = clamp(place, 0.0, 1.0) * float(steps);
+  uint cell = min(uint(at), steps - 1u);
+  Floats values = Floats(surface.boundary);
+  return mix(values.at[first + cell], values.at[first + cell + 1u], at - float(cell));
+}
+
+// Share of light from outside at that cosine that goes in, by a smooth surface or by all facets of a rough one.
+float surface_transmittance(float cosine, OpticalSurface surface) {
+  if (surface.roughness == 0.0) return fresnel_transmittance(cosine, surface);
+  return 1.0 - of_boundary(surface, 0u, OUTSIDE_STEPS, sqrt(max(cosine, 0.0)));
+}
+
+// Mean cosine inside of light from outside at that cosine.
+float cosine_inside(float cosine, OpticalSurface surface) {
+  if (surface.roughness > 0.0) return of_boundary(surface, BOUNDARY_COSINES, OUTSIDE_STEPS, sqrt(max(cosine, 0.0)));
+  return sqrt(max(1.0 - (1.0 - cosine * cosine) / (surface.eta * surface.eta), 0.0));
+}
+
+// What of light from inside at that cosine stays inside.
+float surface_reflectance_inside(float cosine, OpticalSurface surface) {
+  if (surface.roughness == 0.0) return internal_reflectance(cosine, surface);
+  return of_boundary(surface, BOUNDARY_INSIDE, INSIDE_STEPS, cosine);
 }
 
 #endif

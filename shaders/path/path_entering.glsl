@@ -34,7 +34,7 @@ float share_seen(Lamp lamp, vec3 position, vec3 normal) {
 vec3 entering_from(uint number, vec3 position, vec3 normal) {
   LightRecord light = push.lights.at[number];
   if (light.kind == LIGHT_AMBIENT) return push.diffuse_transmittance * light.power;
-  OpticalSurface surface = OpticalSurface(push.eta, push.coat_eta, push.coat, 0.0);
+  OpticalSurface surface = OpticalSurface(push.eta, push.coat_eta, push.coat, 0.0, 0.0, uvec2(0));
   Lamp lamp = Lamp(light, no_shape(), 0u, push.grid.cell, surface, upright(normal));
   if (SHAPED) lamp.shape = push.shapes.at[number];
   if (SHAPED && light.kind == LIGHT_ENVIRONMENT) {

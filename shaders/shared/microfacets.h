@@ -40,6 +40,19 @@ QG_INLINE float gone_for_good(vec3 way, vec3 facet, float alpha) {
   return seen / (seen + smith_lambda(min(cosine, 1.0f), alpha));
 }
 
+// Share of light at that cosine with the normal of the surface that no facet holds up on its way from it (Heitz 2014).
+QG_INLINE float free_of_facets(float cosine, float alpha) {
+  return cosine > 0.0f ? 1.0f / (1.0f + smith_lambda(min(cosine, 1.0f), alpha)) : 0.0f;
+}
+
+// Cosine with the normal, on the other side of the surface, of light from `way` that a facet refracts into an index of
+// refraction eta times as high; below 0: another facet has it.
+QG_INLINE float refracted_cosine(vec3 way, vec3 facet, float eta) {
+  float seen = min(max(dot(way, facet), 0.0f), 1.0f);
+  float bent = sqrt(max(1.0f - (1.0f - seen * seen) / (eta * eta), 0.0f));
+  return (way.z - (seen - eta * bent) * facet.z) / eta;
+}
+
 #ifdef __cplusplus
 }  // namespace quadgraph::gpu
 #endif

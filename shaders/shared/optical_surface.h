@@ -1,4 +1,4 @@
-// Where a body meets the air: smooth, and bare or under a coat; shared with C++, see shared.h.
+// Where a body meets the air: bare or under a coat, smooth or rough; shared with C++, see shared.h.
 #ifndef QUADGRAPH_OPTICAL_SURFACE_H
 #define QUADGRAPH_OPTICAL_SURFACE_H
 
@@ -14,7 +14,17 @@ struct OpticalSurface {
   float coat_eta;        // of the coat
   float coat;            // share of the surface that lies under it
   float coat_roughness;  // GGX alpha of its upper side
+  float roughness;       // of the facets that light goes in and out by; 0: smooth
+  uvec2 boundary;        // address of BOUNDARY_VALUES numbers; of a rough one alone
 };
+
+// What a rough surface mirrors of light from outside, at the squares of even steps of its cosine; then the mean cosine
+// inside of what goes in, at the same; then what it mirrors of light from inside, at even steps of its cosine there.
+const uint OUTSIDE_STEPS = 32u;
+const uint INSIDE_STEPS = 128u;
+const uint BOUNDARY_COSINES = OUTSIDE_STEPS + 1u;
+const uint BOUNDARY_INSIDE = 2u * (OUTSIDE_STEPS + 1u);
+const uint BOUNDARY_VALUES = BOUNDARY_INSIDE + INSIDE_STEPS + 1u;
 
 #ifdef __cplusplus
 }  // namespace quadgraph::gpu

@@ -14,8 +14,8 @@ struct Lambertian {
 Lambertian lambertian(OpticalSurface surface) {
   Lambertian light;
   for (uint k = 0u; k < LAMBERTIAN_NODES; ++k) {
-    light.share[k] = LAMBERTIAN_W[k] * fresnel_transmittance(sqrt(LAMBERTIAN_U[k]), surface);
-    light.cosine[k] = sqrt(1.0 - (1.0 - LAMBERTIAN_U[k]) / (surface.eta * surface.eta));
+    light.share[k] = LAMBERTIAN_W[k] * surface_transmittance(sqrt(LAMBERTIAN_U[k]), surface);
+    light.cosine[k] = cosine_inside(sqrt(LAMBERTIAN_U[k]), surface);
   }
   light.share /= dot(light.share, vec4(1));
   return light;
@@ -44,13 +44,33 @@ vec3 refracted(vec3 incoming, vec3 normal, float eta) {
   return normalize(incoming / eta + (cos_i / eta - cos_t) * normal);
 }
 
-// By a facet of a face, of that unit normal: as `refracted`, and never out of the face.
+// As deep as light goes on average by a surface of that normal, rough or smooth.
+vec3 refracted_on_average(vec3 incoming, vec3 normal, OpticalSurface surface) {
+  vec3 inside = refracted(incoming, normal, surface.eta);
+  if (surface.roughness == 0.0) return inside;
+  float cosine = cosine_inside(clamp(-dot(incoming, normal), 0.0, 1.0), surface);
+  vec3 aside = inside - dot(inside, normal) * normal;
+  float sine = length(aside);
+  if (sine < 1e-6) return inside;
+  return normalize(sqrt(max(1.0 - cosine * cosine, 0.0)) / sine * aside - cosine * normal);
+}
+
+// A way inside that a facet of a face gave: never out of the face.
 const float LEAST_DOWN = 0.02;
 
-vec3 refracted_by_facet(vec3 incoming, vec3 normal, vec3 facet, float eta) {
-  vec3 inside = refracted(incoming, facet, eta);
+vec3 into_face(vec3 inside, vec3 normal, vec3 facet) {
   float up = dot(inside, normal);
   return facet == normal || up <= -LEAST_DOWN ? inside : normalize(inside - (up + LEAST_DOWN) * normal);
+}
+
+// On average, by facets about that unit normal of a leaning face.
+vec3 goes_in(vec3 incoming, vec3 normal, vec3 facet, OpticalSurface surface) {
+  return into_face(refracted_on_average(incoming, facet, surface), normal, facet);
+}
+
+// By a facet of that unit normal.
+vec3 refracted_by_facet(vec3 incoming, vec3 normal, vec3 facet, float eta) {
+  return into_face(refracted(incoming, facet, eta), normal, facet);
 }
 
 #endif

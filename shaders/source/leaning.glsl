@@ -38,9 +38,9 @@ vec3 facet_normal(Leaning leaning) {
 // Facets that turn away get nothing, and others at most twice what the face does: as ridges, one side of which lies in
 // the shadow of the other. So as much meets facets that lean to one side and to the other as meets the face.
 float let_in_by_facets(Leaning leaning, vec3 towards, float cosine, OpticalSurface surface) {
-  if (leaning.cosine == 1.0) return cosine * fresnel_transmittance(cosine, surface);
+  if (leaning.cosine == 1.0) return cosine * surface_transmittance(cosine, surface);
   float met = max(dot(leaning.across, towards), 0.0);
-  return min(met, 2.0 * cosine) * fresnel_transmittance(min(leaning.cosine * met, 1.0), surface);
+  return min(met, 2.0 * cosine) * surface_transmittance(min(leaning.cosine * met, 1.0), surface);
 }
 
 #endif

@@ -13,7 +13,7 @@ float let_in(BeamRecord beam, vec3 to, vec3 normal, OpticalSurface surface) {
   float square = dot(to, to), across = dot(normal, to);
   float sent = max(-dot(cross(beam.u, beam.v), to), 0.0);
   return sent * max(across, 0.0) / (square * square) *
-         fresnel_transmittance(clamp(across / sqrt(square), 0.0, 1.0), surface);
+         surface_transmittance(clamp(across / sqrt(square), 0.0, 1.0), surface);
 }
 
 // From a part that is drawn by what it lets in, as if nothing hid it, and there from anywhere. number: of the ray,

@@ -26,7 +26,7 @@ void meet_surface(inout Ray ray, uint face) {
   vec3 n = outward_normal(face);
   float cosine = dot(ray.direction, n);
   if (is_open(BODY.face_kinds, face)) {
-    vec3 reflected = ray.power * internal_reflectance(cosine, surface_of(BODY.face_kinds, face));
+    vec3 reflected = ray.power * surface_reflectance_inside(cosine, surface_of(BODY.face_kinds, face));
     vec3 leaving = ray.power - reflected;
     unscattered += leaving;
     add_power(push.unscattered, face, leaving);
@@ -47,9 +47,10 @@ void walk_from(Beam beam, uint face, uint ray) {
     vec3 l = quarter_centre(k);
     Frame at = Frame(open.corners * l, open.normal, open.facet, from.tangent, origin_number(face, k), open.surface);
     TetPoint point = start_on_face(open.tet, open.ids, l);
+    vec3 facet = entered_by(beam.way, at);
     Ray inside = by_one_ray(beam.way)
                      ? start_even(beam.way, point, at, power)
-                     : start(point, at, entered_by(beam.way, at), incoming(beam.way, ray, at), power);
+                     : start(point, goes_in(incoming(beam.way, ray, at), at.normal, facet, at.surface), power);
     segments += walk(inside);
   }
 }

@@ -73,10 +73,11 @@ vec3 incoming(BeamRecord beam, uint ray, Frame at) {
 
 // The bundle of rays that stands for even light on a surface, and the surface that it is of; none yet.
 Lambertian bundle;
-OpticalSurface bundle_of = OpticalSurface(0.0, 0.0, 0.0, 0.0);
+OpticalSurface bundle_of = OpticalSurface(0.0, 0.0, 0.0, 0.0, 0.0, uvec2(0));
 
 void find_bundle(OpticalSurface surface) {
-  if (surface.eta == bundle_of.eta && surface.coat_eta == bundle_of.coat_eta && surface.coat == bundle_of.coat) return;
+  bool known = surface.eta == bundle_of.eta && surface.coat_eta == bundle_of.coat_eta;
+  if (known && surface.coat == bundle_of.coat && surface.roughness == bundle_of.roughness) return;
   bundle = lambertian(surface);
   bundle_of = surface;
 }
@@ -108,10 +109,9 @@ Ray start_even(BeamRecord way, TetPoint point, Frame at, vec3 power) {
   return Ray(point, inside, power, vec3(0), 1.0);
 }
 
-// The ray inside, of power that has entered at a point of a face by facets of that normal and travels along `direction`
-// outside.
-Ray start(TetPoint point, Frame at, vec3 facet, vec3 direction, vec3 power) {
-  return Ray(point, refracted_by_facet(direction, at.normal, facet, at.surface.eta), power, vec3(0), 1.0);
+// The ray inside, of power that has entered at a point of a face.
+Ray start(TetPoint point, vec3 inside, vec3 power) {
+  return Ray(point, inside, power, vec3(0), 1.0);
 }
 
 // The normal by which the light of a beam enters: of a bundle from all around that of the face.

@@ -85,7 +85,7 @@ void meet_surface(inout Ray ray, uint face) {
   float cosine = clamp(dot(ray.direction, n), 0.0, 1.0);
   if (is_open(BODY.face_kinds, face)) {
     OpticalSurface surface = surface_of(BODY.face_kinds, face);
-    float eta = surface.eta, reflected = internal_reflectance(cosine, surface);
+    float reflected = surface_reflectance_inside(cosine, surface);
     vec3 leaving = (1.0 - reflected) * ray.power;
     if (scattered || push.g != vec3(0)) {
       add_power(push.leaving, face, leaving);
@@ -96,9 +96,11 @@ void meet_surface(inout Ray ray, uint face) {
       ray.power -= leaving;
     } else if (uniform_number(state) >= reflected) {
       vec3 point = in_space(ray.at);
-      ray.power *= enter_again(through_air(face, point, leaving_direction(ray.direction, n, cosine, eta), state), ray);
+      ray.power *= enter_again(through_air(face, point, way_on(ray.direction, n, surface, true, state), state), ray);
       return;
     }
+    ray.direction = way_on(ray.direction, n, surface, false, state);
+    return;
   }
   ray.direction = normalize(ray.direction - 2.0 * cosine * n);
 }

@@ -31,7 +31,7 @@ const float REFLECTED_RAYS = 4.0;
 bool enters_reflected(vec3 direction, vec3 facet, uint face, Frame at, inout Ray ray) {
   if (!reflects(at.surface) || !sees_body(face)) return false;
   float cosine = clamp(-dot(direction, facet), 0.0, 1.0);
-  float transmitted = fresnel_transmittance(cosine, at.surface);
+  float transmitted = surface_transmittance(cosine, at.surface);
   if (transmitted < 1e-3) return false;
   float reflected = 1.0 / transmitted - 1.0, chance = min(REFLECTED_RAYS * reflected, 1.0);
   if (uniform_number(state) >= chance) return false;
@@ -78,7 +78,8 @@ void enter(Beam beam, uint face, uint ray, TetPoint point, Frame at, Arriving li
   bool one = even && push.rays == 1u;
   vec3 facet = even ? at.normal : at.facet, direction = light.direction;
   if (push.sky == 0u && !one) direction = incoming(beam.way, ray, at);
-  Ray inside = one ? start_even(beam.way, point, at, light.power) : start(point, at, facet, direction, light.power);
+  Ray inside = one ? start_even(beam.way, point, at, light.power)
+                   : start(point, way_in(direction, at.normal, facet, at.surface, state), light.power);
   for (uint reflections = 0u; reflections < 2u; ++reflections) {
     // Of a bundle that one ray stands for no reflection is known.
     if (reflections == 1u && (one || !enters_reflected(direction, facet, face, at, inside))) break;

@@ -39,15 +39,15 @@ vec3 left, entered_again;  // of the face, over its area
 void add_leaving(Surface at, float stratum, float azimuth, inout uint state) {
   float u = (stratum + uniform_number(state)) / float(push.rays);
   float s = sqrt(uniform_number(state)), t = uniform_number(state);
-  float cosine = sqrt(1.0 - (1.0 - u) / (at.surface.eta * at.surface.eta));
   vec3 across = cos(azimuth) * at.tangent + sin(azimuth) * at.side;
-  vec3 inside = normalize(sqrt(1.0 - u) / at.surface.eta * across - cosine * at.normal);
+  vec3 outside = sqrt(u) * at.normal - sqrt(1.0 - u) * across;
+  vec3 inside = way_in(-outside, at.normal, at.normal, at.surface, state);
   vec3 l = vec3(1.0 - s, s * (1.0 - t), s * t);
   vec3 before, now = arriving(ray_from(start_on_face(at.tet, at.ids, l), inside, hash(state)), before);
-  vec3 leaves = fresnel_transmittance(sqrt(u), at.surface) * (now - before);
+  vec3 leaves = surface_transmittance(sqrt(u), at.surface) * (now - before);
   left += leaves;
   if (!sees_body(at.face)) return;
-  Entrance entry = through_air(at.face, at.corners * l, leaving_direction(-inside, at.normal, cosine, at.surface.eta), state);
+  Entrance entry = through_air(at.face, at.corners * l, outside, state);
   if (entry.face != NO_FACE) entered_again += leaves;
 }
 

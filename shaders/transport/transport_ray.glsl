@@ -143,13 +143,13 @@ bool goes_past(uint face, inout Ray ray) {
   float cosine = clamp(dot(ray.direction, n), 0.0, 1.0);
   if (is_open(BODY.face_kinds, face)) {
     OpticalSurface surface = surface_of(BODY.face_kinds, face);
-    float eta = surface.eta, reflected = internal_reflectance(cosine, surface);
+    float eta = surface.eta, reflected = surface_reflectance_inside(cosine, surface);
     if (!sees_body(face)) {
       ray.left *= reflected;
       ray.left_before *= reflected;
       if (reflected == 0.0) return false;
     } else if (uniform_number(ray.state) >= reflected) {
-      Entrance entry = through_air(face, in_space(ray.at), leaving_direction(ray.direction, n, cosine, eta), ray.state);
+      Entrance entry = through_air(face, in_space(ray.at), way_on(ray.direction, n, surface, true, ray.state), ray.state);
       if (entry.face == NO_FACE) return false;
       ray.at = entrance_point(entry);
       ray.direction = entry.direction;
@@ -159,6 +159,8 @@ bool goes_past(uint face, inout Ray ray) {
       ray.left_before *= kept;
       return true;
     }
+    ray.direction = way_on(ray.direction, n, surface, false, ray.state);
+    return true;
   }
   ray.direction = normalize(ray.direction - 2.0 * cosine * n);
   return true;

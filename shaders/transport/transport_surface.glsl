@@ -7,6 +7,7 @@
 #define QUADGRAPH_TRANSPORT_SURFACE_GLSL
 
 #include "material/fresnel.glsl"
+#include "material/rough_surface.glsl"
 #include "source/inner_surface.glsl"
 #include "source/lambertian.glsl"
 #include "shared/random.glsl"
@@ -24,12 +25,6 @@ bool sees_body(uint face) {
   return FIELD.outside != 0u && FIELD.sky.at[face] < 1.0;
 }
 
-// Outside, for a direction that leaves at inside cosine `cosine`.
-vec3 leaving_direction(vec3 direction, vec3 n, float cosine, float eta) {
-  float outside = sqrt(max(1.0 - eta * eta * (1.0 - cosine * cosine), 0.0));
-  return normalize(eta * (direction - cosine * n) + outside * n);
-}
-
 // Where a ray enters the body.
 struct Entrance {
   uint face;  // or NO_FACE: nowhere
@@ -40,6 +35,12 @@ struct Entrance {
 TetPoint entrance_point(Entrance entry) {
   vec3 l = vec3(max(1.0 - entry.place.x - entry.place.y, 0.0), entry.place);
   return start_on_face(BODY.face_tets.at[entry.face], BODY.faces.at[entry.face], l);
+}
+
+// Inside, of light along `incoming` that goes in at a face by facets about the normal `by`, by one of them.
+vec3 way_in(vec3 incoming, vec3 normal, vec3 by, OpticalSurface surface, inout uint state) {
+  vec3 facet = facet_that_lets_in(incoming, by, surface, state);
+  return refracted_by_facet(incoming, normal, facet, surface.eta);
 }
 
 // mm
@@ -60,8 +61,8 @@ Entrance through_air(uint face, vec3 point, vec3 direction, inout uint state) {
     vec3 n = outward_normal(face);
     float cosine = clamp(-dot(direction, n), 0.0, 1.0);
     OpticalSurface surface = surface_of(BODY.face_kinds, face);
-    if (is_open(BODY.face_kinds, face) && uniform_number(state) < fresnel_transmittance(cosine, surface)) {
-      return Entrance(face, clamp(hit.place, vec2(0), vec2(1)), refracted(direction, n, surface.eta));
+    if (is_open(BODY.face_kinds, face) && uniform_number(state) < surface_transmittance(cosine, surface)) {
+      return Entrance(face, clamp(hit.place, vec2(0), vec2(1)), way_in(direction, n, n, surface, state));
     }
     direction = normalize(direction + 2.0 * cosine * n);
   }

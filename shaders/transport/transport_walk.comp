@@ -45,7 +45,7 @@ void meet_surface(inout Ray ray, uint face) {
   float cosine = dot(ray.direction, n);
   if (is_open(BODY.face_kinds, face)) {
     OpticalSurface surface = surface_of(BODY.face_kinds, face);
-    float eta = surface.eta, reflected = internal_reflectance(cosine, surface);
+    float reflected = surface_reflectance_inside(cosine, surface);
     if (!sees_body(face)) {
       vec3 kept = ray.power * reflected;
       leave(face, ray.power - kept);
@@ -53,10 +53,12 @@ void meet_surface(inout Ray ray, uint face) {
     } else if (uniform_number(state) >= reflected) {
       leave(face, ray.power);
       vec3 point = in_space(ray.at);
-      ray.power *= enter_again(through_air(face, point, leaving_direction(ray.direction, n, cosine, eta), state), ray);
+      ray.power *= enter_again(through_air(face, point, way_on(ray.direction, n, surface, true, state), state), ray);
       entered_again += ray.power;
       return;
     }
+    ray.direction = way_on(ray.direction, n, surface, false, state);
+    return;
   }
   ray.direction = normalize(ray.direction - 2.0 * cosine * n);
 }

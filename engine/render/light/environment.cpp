@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
-#include "engine/optics/fresnel.h"
+#include "engine/optics/surface_boundary.h"
 
 namespace quadgraph {
 namespace {
@@ -139,7 +139,7 @@ Environment environment_of(Image picture) {
 }
 
 std::vector<double> irradiance_degrees(const OpticalSurface& surface, int degree) {
-  return degrees_of([&](double c) { return c > 0 ? c * fresnel_transmittance(c, surface) : 0; }, degree);
+  return degrees_of([&](double c) { return c > 0 ? c * surface_transmittance(c, surface) : 0; }, degree);
 }
 
 std::vector<double> ray_degrees(int degree) {

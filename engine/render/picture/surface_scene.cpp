@@ -1,6 +1,6 @@
 #include "engine/render/picture/surface_scene.h"
 
-#include "engine/optics/fresnel.h"
+#include "engine/optics/surface_boundary.h"
 
 namespace quadgraph {
 namespace {

@@ -41,9 +41,7 @@ class Engine:
 
     def __init__(self, path: str | Path, *, device: str = "", validation: bool = False) -> None:
         """Load a file. device: cpu, or part of a Vulkan device's name; default: a GPU, else cpu. validation: load the
-        validation layer of a Vulkan device.
-
-        Raises FormatError, InputError, DeviceError.
+        validation layer of a Vulkan device. Raises FormatError, InputError, DeviceError.
         """
         self._open: core.Engine | None = core.Engine(Path(path), device, validation)
         self._name = Path(path).name
@@ -148,8 +146,8 @@ class Engine:
         function: given points of the body at rest, (n, 3) float32 mm, returns sigma_s_prime and sigma_a, 1/mm, each one
         number, (n,), (n, 3), or (3,) for all points; it is called once for every level, at the middles of tets and
         outside faces, and once at other points of the finest tets, by which the error of one value in each is told.
-        `VolumeMaterial.from_function` makes a grid of it. Raises InputError, and sets nothing, for other
-        shapes and for numbers that are negative or not finite.
+        `VolumeMaterial.from_function` makes a grid of it. Raises InputError, and sets nothing, for other shapes and for
+        numbers that are negative or not finite.
         """
         if np.ndim(eta) or np.asarray(eta).dtype.kind not in "fiub":
             raise InputError(f"eta: {type(eta).__name__} found, a number is wanted")
@@ -204,16 +202,17 @@ class Engine:
         self._placements, self._solution = wanted, None
 
     def set_edits(self, edits: Sequence[Mapping[str, Any]]) -> None:
-        """Change the material in places, one edit, or layer of edits, after the other (docs/scene.md, "Edits").
-
-        Raises InputError.
-        """
+        """Change the material in places, by edits or layers of them (docs/scene.md, "Edits"). Raises InputError."""
         core.set_edits(self._engine, json.dumps({"edits": [plain_members(edit) for edit in edits]}))
 
     def set_normal_map(self, normal_map: Mapping[str, Any] | None) -> None:
         """Let light enter by a normal map of a scene; None: by the file's own. Raises InputError."""
         picture = {} if normal_map is None else {"normal_map": plain_members(normal_map)}
         core.set_normal_map(self._engine, json.dumps({"picture": picture}))
+
+    def set_light_roughness(self, alpha: float | None) -> None:
+        """Let light in and out by a GGX alpha, 0 at first; None: the material's, as scenes. Raises InputError."""
+        self._engine.set_light_roughness(alpha)
 
     def set_cuts(self, cuts: Sequence[Mapping[str, Any]]) -> None:
         """Cut pieces away, with shortest-path alone (docs/shortest-path.md, "Cuts"). Raises InputError."""

@@ -223,10 +223,14 @@ def inputs(args: argparse.Namespace) -> list[Path | str | None]:
 
 
 def solve(engine: Engine, args: argparse.Namespace) -> dict:
-    """Solve as the options say, by the light that their normal map lets in; the report of `Engine.solve`."""
+    """Solve as the options say, with light that goes in by their normal map and roughness; the report of
+    `Engine.solve`.
+    """
     named = getattr(args, "normal_map", None)
     picture = {"normal_map": {"image": str(named)}} if named else {}
     load_core().set_normal_map(engine, json.dumps({"picture": picture}))
+    for_light = getattr(args, "transmission_roughness", None)
+    engine.set_light_roughness(getattr(args, "roughness", None) if for_light is None else for_light)
     return engine.solve(**keywords(args, SOLVE_GROUPS))
 
 

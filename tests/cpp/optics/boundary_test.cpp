@@ -6,6 +6,7 @@
 #include <glm/glm.hpp>
 
 #include "engine/optics/fresnel.h"
+#include "engine/optics/surface_boundary.h"
 
 using namespace quadgraph;
 

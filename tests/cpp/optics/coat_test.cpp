@@ -11,6 +11,7 @@
 #include "engine/optics/fresnel.h"
 #include "engine/optics/material.h"
 #include "engine/optics/rough_boundary.h"
+#include "engine/optics/surface_boundary.h"
 
 namespace quadgraph {
 namespace {

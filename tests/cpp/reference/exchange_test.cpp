@@ -7,7 +7,7 @@
 #include <random>
 
 #include "engine/file/geometry.h"
-#include "engine/optics/fresnel.h"
+#include "engine/optics/surface_boundary.h"
 #include "tests/cpp/fixtures/graph_cases.h"
 #include "tests/cpp/fixtures/seeing_levels.h"
 #include "tests/cpp/fixtures/test_data.h"

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "engine/optics/fresnel.h"
+#include "engine/optics/surface_boundary.h"
 #include "engine/reference/entering.h"
 #include "shaders/gather/gather_shared.h"
 #include "tests/cpp/fixtures/graph_cases.h"

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "engine/optics/fresnel.h"
+#include "engine/optics/surface_boundary.h"
 #include "tests/cpp/fixtures/display_stage.h"
 
 using namespace quadgraph;

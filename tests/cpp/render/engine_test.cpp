@@ -9,6 +9,7 @@
 
 #include "engine/base/error.h"
 #include "engine/optics/fresnel.h"
+#include "engine/optics/surface_boundary.h"
 #include "engine/render/picture/tone_mapper.h"
 #include "tests/cpp/fixtures/checked_engine.h"
 

@@ -9,6 +9,7 @@
 #include "engine/base/error.h"
 #include "engine/device/commands.h"
 #include "engine/optics/fresnel.h"
+#include "engine/optics/surface_boundary.h"
 #include "tests/cpp/fixtures/checked_context.h"
 #include "tests/cpp/fixtures/one_body.h"
 #include "tests/cpp/fixtures/render_shapes.h"

@@ -103,13 +103,13 @@ TEST_CASE("a coat is of one body, of all or of none, and bodies that it parts ha
   const CheckedContext checked;
   Refractions refractions(checked.context, 3);
   const Coat lacquer{.share = 1};
-  CHECK_FALSE(refractions.set_coats({}));
-  CHECK(refractions.set_coats(std::array{Coat{}, lacquer, Coat{}}));
+  CHECK_FALSE(refractions.set_finishes({}));
+  CHECK(refractions.set_finishes(std::array{Finish{}, Finish{lacquer}, Finish{}}));
   CHECK(refractions.boundaries(Method::fem, Source::buried, Model::sp3).bits() == 3);
   CHECK(refractions.surfaces()[1].coat == lacquer);
   CHECK(refractions.set(std::array{1.4f}));
   CHECK(refractions.surfaces()[1] == OpticalSurface(double{1.4f}, lacquer));
-  CHECK(refractions.set_coats(std::array{lacquer}));
+  CHECK(refractions.set_finishes(std::array{Finish{lacquer}}));
   CHECK(refractions.boundaries(Method::fem, Source::buried, Model::sp3).bits() == 0);
-  CHECK_THROWS_AS(refractions.set_coats(std::array{lacquer, lacquer}), InputError);
+  CHECK_THROWS_AS(refractions.set_finishes(std::array{Finish{lacquer}, Finish{lacquer}}), InputError);
 }

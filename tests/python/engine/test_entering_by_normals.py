@@ -86,7 +86,7 @@ def solved(
 ):
     """Solution and surface of a scene."""
     with quadgraph.Stage(device=device) as stage:
-        picture = {"normal_map": map_} if map_ else {}
+        picture = {"transmission_roughness": 0} | ({"normal_map": map_} if map_ else {})
         solver = {"correction": False, **solver}
         members = {"material": material, "lights": lights or [LAMP], "solver": solver, "picture": picture}
         stage.show(quadgraph.Scene.from_dict({"body": str(body), **members}))

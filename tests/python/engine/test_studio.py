@@ -17,6 +17,7 @@ SMALL = {"width": 24, "height": 24, "samples": 4}
 
 def picture(light: str, view: str) -> quadgraph.Picture:
     with quadgraph.Engine(tiny.PATH, device="cpu") as engine:
+        engine.set_light_roughness(None)
         engine.material = "milk"
         engine.lights = [light]
         engine.solve()
