@@ -264,7 +264,7 @@ def test_a_hand_at_the_window(open_window, tmp_path: Path):
     left, right = sides(first)
     assert right > 1.2 * left
 
-    hand.drag(-400, 0, held="ctrl")  # as far as a flat side needs to be lit by itself
+    hand.drag(-460, 0, held="ctrl")  # as far as a flat side needs to be lit by itself
     dragged = hand.picture()
     left, right = sides(dragged)
     assert left > 1.2 * right
