@@ -14,16 +14,13 @@ struct Finish {
   bool operator==(const Finish&) const = default;
 };
 
-struct OpticalSurface {
+struct OpticalSurface : Finish {
   double eta = 1;  // index of refraction of the body, over that outside
-  Coat coat{};
-  float roughness = 0;  // GGX alpha of the body's own surface, for light that goes in and out by it
 
   OpticalSurface() = default;
   // A bare and smooth one.
   OpticalSurface(double index) : eta(index) {}  // NOLINT: a number says all of it
-  OpticalSurface(double index, const Coat& over) : eta(index), coat(over) {}
-  OpticalSurface(double index, const Coat& over, float alpha) : eta(index), coat(over), roughness(alpha) {}
+  OpticalSurface(double index, const Coat& over, float alpha = 0) : Finish{over, alpha}, eta(index) {}
 
   bool operator==(const OpticalSurface&) const = default;
 

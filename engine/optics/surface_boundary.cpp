@@ -153,13 +153,7 @@ RoughBoundary found_boundary(const OpticalSurface& surface) {
 }  // namespace
 
 float facet_roughness(const OpticalSurface& surface) {
-  const Coat& coat = surface.coat;
-  const float alpha = surface.roughness;
-  if (coat.share == 0 || alpha == 0) return alpha;
-  const auto eta = static_cast<float>(surface.eta);
-  const float turned = std::max(eta - 1, 0.05f);
-  const float below = alpha * (eta - coat.eta) / turned, above = coat.roughness * (coat.eta - 1) / turned;
-  return std::min(std::sqrt(std::lerp(alpha * alpha, below * below + above * above, coat.share)), 1.0f);
+  return gpu::facet_roughness(surface.roughness, single_precision(surface));
 }
 
 RoughBoundary rough_boundary(const OpticalSurface& surface) {

@@ -14,8 +14,7 @@ namespace quadgraph {
 using RoughBoundary = std::array<float, gpu::BOUNDARY_VALUES>;
 RoughBoundary rough_boundary(const OpticalSurface& surface);
 
-// GGX alpha of the facets that turn what goes in and out: below a coat of nearly the body's index its facets bend light
-// little, and the upper side of the coat by its own.
+// GGX alpha of the facets that turn what goes in and out (gpu::facet_roughness).
 float facet_roughness(const OpticalSurface& surface);
 
 // Share of light from outside at that cosine, in [0, 1], that goes in.

@@ -158,6 +158,7 @@ void Engine::set_light_roughness(std::optional<float> alpha) {
   const auto turn = implementation_->in_use.take();
   auto& self = *implementation_;
   check_options({.transmission_roughness = alpha});
+  if (alpha == self.light_roughness) return;
   self.light_roughness = alpha;
   self.set_surfaces(self.said_surfaces);
 }

@@ -170,7 +170,7 @@ struct Engine::Implementation {
     std::vector<Finish> finishes;
     for (OpticalSurface& surface : found) {
       surface.roughness = light_roughness.value_or(surface.roughness);
-      finishes.push_back({surface.coat, surface.roughness});
+      finishes.push_back(surface);
     }
     if (simulation) simulation->set_finishes(finishes);
     if (found == surfaces) return;

@@ -40,6 +40,7 @@ void Stage::show(const Scene& scene) {
     scene_ = {};
     scene_.body = scene.body;
   }
+  engine_->set_light_roughness(scene.render.light_roughness());
   if (fresh || scene.material != scene_.material || scene.materials != scene_.materials) {
     map_report_ = set_materials(*engine_, scene.material, scene.materials);
     scene_.material = scene.material;
@@ -64,7 +65,6 @@ void Stage::show(const Scene& scene) {
     scene_.cuts = scene.cuts;
   }
   engine_->set_normal_map(scene.render.normal_map);
-  engine_->set_light_roughness(scene.render.light_roughness());
   scene_ = scene;
 }
 

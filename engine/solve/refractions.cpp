@@ -139,9 +139,7 @@ bool Refractions::set_finishes(std::span<const Finish> finishes) {
   }
   std::vector<OpticalSurface> wanted = surfaces_;
   for (std::size_t i = 0; i < wanted.size(); ++i) {
-    const Finish finish = finishes.empty() ? Finish{} : finishes[finishes.size() == 1 ? 0 : i];
-    wanted[i].coat = finish.coat;
-    wanted[i].roughness = finish.roughness;
+    static_cast<Finish&>(wanted[i]) = finishes.empty() ? Finish{} : finishes[finishes.size() == 1 ? 0 : i];
   }
   return take(std::move(wanted));
 }

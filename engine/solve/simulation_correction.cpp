@@ -12,8 +12,7 @@ double index_change(std::span<const OpticalSurface> before, std::span<const Opti
   double most = before.empty() ? 1 : 0;
   for (std::size_t i = 0; i < before.size(); ++i) {
     const double change = std::abs(now[i].eta - before[i].eta) / now[i].eta;
-    const bool alike = now[i].coat == before[i].coat && now[i].roughness == before[i].roughness;
-    most = std::max(most, alike ? change : 1);
+    most = std::max(most, static_cast<const Finish&>(now[i]) == before[i] ? change : 1);
   }
   return most;
 }

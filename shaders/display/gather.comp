@@ -116,7 +116,7 @@ Seen face_seen(Pixel pixel, SeenPixel seen, uint first, inout uint waiting) {
     waiting &= ~samples;
     Spot spot = spot_of(pixel, seen.samples[k] - 1u, samples);
     if (all.share == 0.0) {
-      all.roughness = roughness_of_leaving(roughness, surface);
+      all.roughness = facet_roughness(roughness, surface);
       all.lets_out = surface.coat == 0.0 ? -1.0 : 1.0 - evenly;
     }
     all.share += spot.share;

@@ -43,16 +43,6 @@ bool reflects(OpticalSurface surface) {
   return surface.eta != 1.0 || surface.coat != 0.0;
 }
 
-// GGX alpha by which a surface of that roughness scatters what leaves it: below a coat of nearly its index facets bend
-// light little, and the upper side of the coat by its own. Variances of slopes times how far they turn light, added.
-float roughness_of_leaving(float alpha, OpticalSurface surface) {
-  if (surface.coat == 0.0 || alpha == 0.0) return alpha;
-  float turned = max(surface.eta - 1.0, 0.05);
-  float below = alpha * (surface.eta - surface.coat_eta) / turned;
-  float above = surface.coat_roughness * (surface.coat_eta - 1.0) / turned;
-  return min(sqrt(mix(alpha * alpha, below * below + above * above, surface.coat)), 1.0);
-}
-
 // As a smooth surface is, or a facet of a rough one, coated in parts.
 float fresnel_reflectance(float cos_i, OpticalSurface surface) {
   float bare = fresnel_reflectance(cos_i, surface.eta);

@@ -108,8 +108,8 @@ class PictureOptions(TypedDict, total=False):
     width, height: pixels, 1 to 16384; samples: of a pixel, four at a time, 0 for 16, or 256 with an aperture; filter:
     how they are weighed around the middle of a pixel; converge: the error down to which corrections and samples run
     on, 0 for none; time_limit: seconds for that, 0 for no limit; roughness: of the surface, GGX alpha, left out, the
-    material's; transmission_roughness: the same for light that comes out, left out, as rough; radiance: how it
-    leaves the surface; show: "picture", or what is inside (docs/window.md, "Views of the
+    material's; transmission_roughness: the same for light that goes in and out, left out, as rough; radiance: how
+    it leaves the surface; show: "picture", or what is inside (docs/window.md, "Views of the
     inside"); ground: its shadow where the body stands, and its light; surroundings: what environment lights show,
     behind it; roughness_map, normal_map: as in scene files; exposure: "auto" or stops; tone: the curve from radiance to
     a screen; white_balance: kelvin of the light that is shown white, 6504 for none changed; background: "studio",

@@ -23,7 +23,7 @@ def ball(tmp_path_factory):
 
 def solved(ball, alpha: float | None, material: str = MATERIAL, **options) -> tuple[float, float]:
     """Power that enters and that leaves after it was scattered, W, in even light."""
-    with quadgraph.Engine(ball, device=options.pop("device", "cpu")) as engine:
+    with quadgraph.Engine(ball, device="cpu") as engine:
         engine.material, engine.lights = material, ["ambient:1"]
         engine.set_light_roughness(alpha)
         engine.solve(**options)
