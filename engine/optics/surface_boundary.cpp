@@ -12,18 +12,21 @@
 #include "engine/optics/fresnel.h"
 #include "engine/optics/rough_boundary.h"
 #include "engine/optics/visible_facets.h"
+#include "shaders/shared/random.h"
 
 namespace quadgraph {
 namespace {
 
 constexpr std::size_t most_kept = 256;
 
+// Over facets, for each number of a table.
+constexpr std::uint32_t outside_ways = 512, inside_ways = 256;
+
 using Key = std::tuple<double, float, float, float, float>;
 
 Key key_of(const OpticalSurface& surface) {
   const Coat coat = surface.coat.share == 0 ? Coat{} : surface.coat;
-  const bool rough = surface.rough();
-  return {surface.eta, coat.share, coat.eta, rough ? coat.roughness : 0, rough ? surface.roughness : 0};
+  return {surface.eta, coat.share, coat.eta, coat.roughness, surface.rough() ? surface.roughness : 0};
 }
 
 // What is found by a surface and is asked for over and over.
@@ -64,37 +67,88 @@ std::span<const float> inside_row(const RoughBoundary& boundary) {
   return std::span(boundary).last(gpu::INSIDE_STEPS + 1);
 }
 
-// Of light from inside: what goes out by the first facet that it meets, and what is mirrored by it and held up by
-// others.
-glm::dvec2 from_inside(double cosine, float alpha, const OpticalSurface& surface) {
-  const glm::vec3 way = way_at(cosine);
-  const auto eta = static_cast<float>(surface.eta);
-  const double hides = static_cast<double>(gpu::smith_lambda(way.z, alpha));
-  return mean_over_facets<glm::dvec2>(way, alpha, [&](const glm::vec3& facet) {
-    const double seen = std::clamp(static_cast<double>(glm::dot(way, facet)), 0.0, 1.0);
-    const double mirrored = internal_reflectance(seen, surface);
-    const double held = mirrored * (1 - static_cast<double>(gpu::gone_for_good(way, facet, alpha)));
-    const float up = gpu::refracted_cosine(way, facet, 1 / eta);
-    if (mirrored == 1 || up <= 0) return glm::dvec2(0, held);
-    const double hidden = static_cast<double>(gpu::smith_lambda(std::min(up, 1.0f), alpha));
-    // Seen from both sides of the surface [Heitz 2016], of what is seen from here.
-    return glm::dvec2((1 - mirrored) * (1 + hides) * std::beta(1 + hides, 1 + hidden), held);
-  });
-}
+// What goes through a rough surface.
+struct Through {
+  double share = 0;
+  double cosine = 0;  // mean, with the normal there
+};
 
-// Mean cosine inside of light from outside at that cosine.
-double cosine_inside(double cosine, float alpha, const OpticalSurface& surface) {
-  const glm::vec3 way = way_at(cosine);
-  const auto eta = static_cast<float>(surface.eta);
-  const auto sums = mean_over_facets<glm::dvec2>(way, alpha, [&](const glm::vec3& facet) {
-    const float seen = std::clamp(glm::dot(way, facet), 0.0f, 1.0f), down = gpu::refracted_cosine(way, facet, eta);
-    const double mirrored = 1 - fresnel_transmittance(static_cast<double>(seen), surface);
-    const double goes_in = 1 - mirrored * static_cast<double>(gpu::gone_for_good(way, facet, alpha));
-    const double through = goes_in * static_cast<double>(gpu::free_of_facets(down, alpha));
-    return glm::dvec2(through, through * static_cast<double>(down));
-  });
-  return sums.x > 0 ? sums.y / sums.x : 0;
-}
+// A way over its facets (microfacets.h) that divides at each of them.
+struct FacetWay {
+  glm::vec3 way;
+  float side, below = 1;
+  double weight = 1;
+  int met = 0;
+};
+
+class FacetWalk {
+ public:
+  FacetWalk(const OpticalSurface& facet, float alpha, float begins)
+      : facet_(facet), alpha_(alpha), begins_(begins), eta_(static_cast<float>(facet.eta)) {}
+
+  // Of light that meets the surface at that cosine, by so many ways, which are others for each row.
+  Through at(double cosine, std::uint32_t row, std::uint32_t ways) {
+    const glm::vec3 away = way_at(cosine);
+    through_ = back_ = cosines_ = 0;
+    row_ = gpu::SPREAD_DIMENSIONS * row;
+    for (way_ = 0; way_ < ways; ++way_) {
+      state_ = gpu::hash(ways * row + way_);
+      follow({.way = {-away.x, 0, -begins_ * away.z}, .side = begins_});
+    }
+    return {through_ / (through_ + back_), through_ > 0 ? cosines_ / through_ : 0};
+  }
+
+ private:
+  static constexpr int most_met = 24;
+  static constexpr double least_weight = 0.1;
+
+  // In [0, 1): the first ones of a way are spread among all of the row.
+  float number(std::uint32_t dimension = gpu::SPREAD_DIMENSIONS) {
+    if (dimension < gpu::SPREAD_DIMENSIONS) return gpu::spread_number(row_, way_, dimension);
+    state_ = state_ * 747796405u + 2891336453u;
+    return static_cast<float>(gpu::hash(state_) >> 8) * 0x1p-24f;
+  }
+
+  void follow(FacetWay light) {
+    const std::uint32_t first = 3 * static_cast<std::uint32_t>(light.met);  // dimension
+    light.below = gpu::next_facet(light.below, light.side * light.way.z, alpha_, number(first));
+    if (light.below == gpu::CLEAR_OF_FACETS || ++light.met > most_met) {
+      const bool through = light.side != begins_;
+      (through ? through_ : back_) += light.weight;
+      if (through) cosines_ += light.weight * static_cast<double>(std::abs(light.way.z));
+      return;
+    }
+    const glm::vec2 u(number(first + 1), number(first + 2));
+    const glm::vec3 facet = gpu::met_facet(light.way, light.side, alpha_, u);
+    const float cosine = std::clamp(-glm::dot(light.way, facet), 0.0f, 1.0f);
+    const bool outside = light.side > 0;
+    const double mirrored = outside ? 1 - fresnel_transmittance(static_cast<double>(cosine), facet_)
+                                    : internal_reflectance(static_cast<double>(cosine), facet_);
+    FacetWay on = light;
+    on.weight *= mirrored;
+    on.way = glm::normalize(light.way + 2 * cosine * facet);
+    go_on(on);
+    light.weight *= 1 - mirrored;
+    light.way = gpu::way_through(light.way, facet, cosine, outside ? 1 / eta_ : eta_);
+    light.side = -light.side;
+    light.below = 1 - light.below;
+    go_on(light);
+  }
+
+  // By chance where little is left.
+  void go_on(FacetWay light) {
+    if (light.weight < least_weight) {
+      if (static_cast<double>(number()) * least_weight >= light.weight) return;
+      light.weight = least_weight;
+    }
+    follow(light);
+  }
+
+  const OpticalSurface& facet_;
+  float alpha_, begins_, eta_;
+  std::uint32_t row_ = 0, way_ = 0, state_ = 0;
+  double through_ = 0, back_ = 0, cosines_ = 0;  // of the row: shares, and the first times the cosine
+};
 
 double smooth_moment(int n, const OpticalSurface& surface) {
   const double eta = surface.eta, critical = std::sqrt(1.0 - 1.0 / (eta * eta));
@@ -119,33 +173,28 @@ double entering(const RoughBoundary& boundary) {
 RoughBoundary found_boundary(const OpticalSurface& surface) {
   RoughBoundary found{};
   const OpticalSurface facet = surface.smooth();
-  for (std::uint32_t k = 0; k <= gpu::OUTSIDE_STEPS; ++k) {
-    const double root = static_cast<double>(k) / gpu::OUTSIDE_STEPS;
-    found[k] = static_cast<float>(rough_reflectance(root * root, static_cast<double>(surface.roughness), facet));
-  }
   const float alpha = facet_roughness(surface);
+  FacetWalk from_outside(facet, alpha, 1), from_inside(facet, alpha, -1);
   for (std::uint32_t k = 0; k <= gpu::OUTSIDE_STEPS; ++k) {
     const double root = static_cast<double>(k) / gpu::OUTSIDE_STEPS;
-    found[gpu::BOUNDARY_COSINES + k] = static_cast<float>(cosine_inside(root * root, alpha, facet));
+    const Through in = from_outside.at(root * root, k, outside_ways);
+    // A coat mirrors by a roughness of its own.
+    found[k] = static_cast<float>(surface.coat.share == 0
+                                      ? 1 - in.share
+                                      : rough_reflectance(root * root, static_cast<double>(surface.roughness), facet));
+    found[gpu::BOUNDARY_COSINES + k] = static_cast<float>(in.cosine);
   }
-  std::array<float, gpu::INSIDE_STEPS + 1> through{}, held{};
+  const auto inside = std::span(found).last(gpu::INSIDE_STEPS + 1);
   for (std::uint32_t k = 0; k <= gpu::INSIDE_STEPS; ++k) {
-    const glm::dvec2 light = from_inside(static_cast<double>(k) / gpu::INSIDE_STEPS, alpha, facet);
-    through[k] = static_cast<float>(light.x);
-    held[k] = static_cast<float>(light.y);
+    inside[k] =
+        static_cast<float>(1 - from_inside.at(static_cast<double>(k) / gpu::INSIDE_STEPS, k, inside_ways).share);
   }
-  const auto even = [&](std::span<const float> values) {
-    return integral(gpu::INSIDE_STEPS, [&](double mu) { return 2 * mu * between(values, mu); });
-  };
-  const double wanted = entering(found) / (surface.eta * surface.eta), first = even(through), later = even(held);
-  const double goes_on = std::clamp((wanted - first) / std::max(later, 1e-30), 0.0, 1.0);
-  // What is left of the balance is a matter of numbers, or of more facets met than two: all that stays has a part in
-  // it.
-  const double known = first + goes_on * later;
-  const double more = std::max((wanted - known) / (1 - known), 0.0), less = std::min(wanted / known, 1.0);
-  for (std::uint32_t k = 0; k <= gpu::INSIDE_STEPS; ++k) {
-    const double out = less * (static_cast<double>(through[k]) + goes_on * static_cast<double>(held[k]));
-    found[gpu::BOUNDARY_INSIDE + k] = static_cast<float>((1 - out) * (1 - more));
+  const double out = integral(gpu::INSIDE_STEPS, [&](double mu) { return 2 * mu * (1 - between(inside, mu)); });
+  // In even light as much goes in as out; what is missing of that has to do with numbers, and coats.
+  const double wanted = entering(found) / (surface.eta * surface.eta);
+  const double more = std::max((wanted - out) / (1 - out), 0.0), less = std::min(wanted / out, 1.0);
+  for (float& mirrored : inside) {
+    mirrored = static_cast<float>((1 - less * (1 - static_cast<double>(mirrored))) * (1 - more));
   }
   return found;
 }

@@ -8,9 +8,9 @@
 
 namespace quadgraph {
 
-// Of a rough surface as passes read it (gpu::OpticalSurface::boundary), linear between these places. From outside it is
-// rough_reflectance. From inside it is what facets mirror or hold up; of what they mirror and others hold up a share
-// goes out, chosen so that in even light as much goes in as out (docs/physics.md, "Rough surfaces").
+// Of a rough surface as passes read it (gpu::OpticalSurface::boundary), linear between these places: by ways from facet
+// to facet (docs/physics.md, "Rough surfaces"), but that a coat mirrors from outside as rough_reflectance has it. What
+// stays inside is such that in even light as much goes in as out.
 using RoughBoundary = std::array<float, gpu::BOUNDARY_VALUES>;
 RoughBoundary rough_boundary(const OpticalSurface& surface);
 

@@ -53,13 +53,13 @@ std::string not_finite(const SolveReport& report) {
 }
 
 std::string out_of_balance(const SolveReport& report) {
-  const glm::dvec3 balance = report.energy.balance();
-  double worst = 0;
-  for (int c = 0; c < 3; ++c) worst = std::max(worst, std::abs(balance[c]));
+  // Of all channels together, as the error is.
+  const glm::dvec3& entered = report.energy.entered;
+  const double lost = glm::length(report.energy.balance() * entered) / std::max(glm::length(entered), 1e-300);
   const double printed = printed_error(report);
-  if (worst <= std::max(printed, least_unbalanced)) return "";
+  if (lost <= std::max(printed, least_unbalanced)) return "";
   const std::string method(name_of(report.method));
-  return "out of balance: " + percent_text(worst) + " of the light is unaccounted for, the printed error is " +
+  return "out of balance: " + percent_text(lost) + " of the light is unaccounted for, the printed error is " +
          percent_text(printed) +
          (conserves(report.method) ? "; a smaller --tolerance or other light may settle it"
                                    : "; " + method + " does not conserve energy, --method fem or quadgraph-fv does");

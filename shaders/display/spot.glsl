@@ -152,10 +152,10 @@ Spot spot_of(Pixel pixel, uint triangle, uint samples) {
   spot.normal = seen_normal(n, across, v);
   Refraction body = refraction_behind(SCENE.face_kinds, SCENE.face.at[at.x]);
   surface = body.surface;
-  float cosine = dot(spot.normal, v);
+  float cosine = clamp(dot(spot.normal, v), 0.0, 1.0);
   evenly = rough_reflectance(body, cosine, roughness);
   coat_evenly = coat_reflectance(body, cosine);
-  spot.even_transmittance = surface_transmittance(clamp(cosine, 0.0, 1.0), surface) / body.radiance_norm;
+  spot.even_transmittance = surface_transmittance(cosine, surface) / body.radiance_norm;
   float sky = dot(spot.l, vec3(SCENE.sky.at[SCENE.face.at[at.x]], SCENE.sky.at[SCENE.face.at[at.y]],
                                SCENE.sky.at[SCENE.face.at[at.z]]));
   spot.specular = specular_radiance(spot.position, spot.normal, v, sky);

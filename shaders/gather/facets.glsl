@@ -2,7 +2,6 @@
 #ifndef QUADGRAPH_FACETS_GLSL
 #define QUADGRAPH_FACETS_GLSL
 
-#include "material/facet_frame.glsl"
 #include "shared/random.h"
 
 struct Facets {
@@ -10,7 +9,7 @@ struct Facets {
   uint start;   // of the sequence of numbers, by pixel
   uint number;  // in the sequence
   uint drawn;   // so far
-  // What the surface that a view ray starts at lets out, where facets say its directions alone; below 0: they say both.
+  // What the surface that a view ray starts at lets out; below 0: what its facets do not send back.
   float lets_out;
 };
 
@@ -20,16 +19,16 @@ bool is_rough(Facets facets) {
   return facets.alpha > 0.0;
 }
 
-// The next facet of a surface of normal `n` that is seen along `outward`, which is turned out of the surface if it is
-// not; towards: `outward` in the frame of the surface; local: the facet there.
-vec3 facet_seen(inout Facets facets, vec3 n, vec3 outward, out vec3 towards, out vec3 local) {
-  vec2 u = vec2(spread_number(facets.start + facets.drawn, facets.number, 0u),
-                spread_number(facets.start + facets.drawn, facets.number, 1u));
+// Two numbers in [0, 1) for the next facet, spread among all that are drawn there.
+vec2 spread_facet(inout Facets facets) {
+  uint start = facets.start + facets.drawn;
   facets.drawn += 2u;
-  FacetFrame frame = facet_frame(n);
-  towards = into_frame(frame, outward);
-  local = visible_facet(towards, facets.alpha, u);
-  return out_of_frame(frame, local);
+  return vec2(spread_number(start, facets.number, 0u), spread_number(start, facets.number, 1u));
+}
+
+// Where random numbers for it begin.
+uint random_state(Facets facets) {
+  return hash(facets.start + hash((facets.number << 8u) + facets.drawn));
 }
 
 #endif

@@ -14,8 +14,8 @@
 
 #include "gather/gather_fields.glsl"
 #include "gather/facets.glsl"
+#include "material/rough_surface.glsl"
 #include "gather/gather_shared.h"
-#include "material/fresnel.glsl"
 #include "shared/creases.h"
 #include "source/inner_surface.glsl"
 
@@ -50,32 +50,47 @@ vec3 smooth_normal(uint face, vec3 l) {
                    l.z * NORMALS.at[3u * face + 2u]);
 }
 
-// A surface that a ray meets from inside.
-struct Met {
-  vec3 normal;   // unit, of the smooth surface, or of a facet
-  float cosine;  // of the ray with it, at least 0
-  OpticalSurface surface;
-};
-
 // Barycentric coordinates of a face's corners at a point of the face.
 vec3 coordinates_on(uvec3 ids, TetPoint at) {
   uvec4 all = BODY.tets.at[at.tet];
   return vec3(at.l[place_of(ids.x, all)], at.l[place_of(ids.y, all)], at.l[place_of(ids.z, all)]);
 }
 
+// A surface that a ray meets from inside.
+struct Met {
+  OpticalSurface surface;  // as rough as it is for the ray
+  vec3 normal;             // unit, of the smooth surface
+  float reflected;         // share
+  uint state;              // of random numbers, where it is rough
+};
+
+// Share of a ray at that cosine with the normal that stays inside: of a rough surface that solves know of as they have
+// it, else by a facet that is drawn.
+float reflected_inside(vec3 direction, vec3 n, OpticalSurface surface, inout Facets facets) {
+  float cosine = max(dot(direction, n), 0.0);
+  if (is_rough(facets) && surface.roughness > 0.0) return surface_reflectance_inside(cosine, surface);
+  if (is_rough(facets)) {
+    FacetFrame frame = facet_frame(n);
+    vec3 way = into_frame(frame, direction);
+    cosine = max(dot(way, visible_facet(way, facets.alpha, spread_facet(facets))), 0.0);
+  }
+  return internal_reflectance(cosine, surface);
+}
+
 // At a point of outside face `face`.
 Met met_from_inside(uint face, TetPoint at, vec3 direction, inout Facets facets) {
-  vec3 n = smooth_normal(face, coordinates_on(BODY.faces.at[face], at)), towards, local;
-  if (is_rough(facets)) n = -facet_seen(facets, -n, -direction, towards, local);
-  return Met(n, max(dot(direction, n), 0.0), surface_of(BODY.face_kinds, face));
+  vec3 n = smooth_normal(face, coordinates_on(BODY.faces.at[face], at));
+  OpticalSurface surface = surface_of(BODY.face_kinds, face);
+  float reflected = reflected_inside(direction, n, surface, facets);
+  surface.roughness = facets.alpha;
+  ++facets.drawn;
+  return Met(surface, n, reflected, is_rough(facets) ? random_state(facets) : 0u);
 }
 
 // At a point of a face of unit normal `flat_normal`.
-Escape escape_here(vec3 share, uint face, TetPoint at, vec3 direction, Met met, vec3 flat_normal) {
-  uvec3 ids = BODY.faces.at[face];
-  vec3 point = corners_of(ids) * coordinates_on(ids, at);
-  float cos_o = sqrt(max(1.0 - met.surface.eta * met.surface.eta * (1.0 - met.cosine * met.cosine), 0.0));
-  vec3 outside = normalize(met.surface.eta * (direction - met.cosine * met.normal) + cos_o * met.normal);
+Escape escape_here(vec3 share, uint face, TetPoint at, vec3 direction, inout Met met, vec3 flat_normal) {
+  vec3 point = corners_of(BODY.faces.at[face]) * coordinates_on(BODY.faces.at[face], at);
+  vec3 outside = way_on(direction, met.normal, met.surface, true, met.state);
   return Escape(share, face, point, outward_of(flat_normal, outside));
 }
 
@@ -184,15 +199,14 @@ Gathered gather(TetPoint at, vec3 direction, bool leaves, inout Facets facets) {
     vec3 n = outward_normal(face);
     if (is_open(BODY.face_kinds, face)) {
       Met met = met_from_inside(face, at, direction, facets);
-      float reflected = internal_reflectance(met.cosine, met.surface);
-      vec3 through = left * (1.0 - reflected);
+      vec3 through = left * (1.0 - met.reflected);
       sum.seen += through;
       if (leaves && largest(through) > largest(sum.second.share)) {
         keep(sum.most, sum.second, escape_here(through, face, at, direction, met, n));
       }
-      left *= reflected;
-      if (reflected == 0.0) break;
-      direction = -outward_of(n, 2.0 * met.cosine * met.normal - direction);
+      left *= met.reflected;
+      if (met.reflected == 0.0) break;
+      direction = -outward_of(n, -way_on(direction, met.normal, met.surface, false, met.state));
     } else {
       direction = normalize(direction - 2.0 * dot(direction, n) * n);
     }

@@ -10,11 +10,29 @@
 
 // The direction inside of light that leaves along `outward` at a surface of normal `n`, turned around; into the face of
 // normal `face_normal` in any case.
-vec3 view_ray(vec3 outward, vec3 n, vec3 face_normal, float eta) {
-  float cos_o = clamp(dot(outward, n), 0.0, 1.0);
-  float cos_i = sqrt(max(1.0 - (1.0 - cos_o * cos_o) / (eta * eta), 0.0));
-  vec3 ray = normalize((cos_o / eta - cos_i) * n - outward / eta);
+vec3 view_ray(vec3 outward, vec3 n, vec3 face_normal, OpticalSurface surface, inout Facets facets) {
+  vec3 ray = -outward;
+  bool found = false;
+  if (is_rough(facets)) {
+    surface.roughness = facets.alpha;
+    uint state = random_state(facets);
+    found = way_by_facets(false, true, n, surface, spread_facet(facets), ray, state);
+  }
+  if (!found) {
+    float cos_o = clamp(dot(outward, n), 0.0, 1.0);
+    float cos_i = sqrt(max(1.0 - (1.0 - cos_o * cos_o) / (surface.eta * surface.eta), 0.0));
+    ray = normalize((cos_o / surface.eta - cos_i) * n - outward / surface.eta);
+  }
   return -outward_of(face_normal, -ray);
+}
+
+// Share of the light inside that a surface of normal `n` lets out along `outward`. starts: whether the view ray starts
+// there.
+float let_out(Facets facets, vec3 outward, vec3 n, Refraction body, bool starts) {
+  float cosine = clamp(dot(outward, n), 0.0, 1.0);
+  if (!is_rough(facets)) return surface_transmittance(cosine, body.surface);
+  if (starts && facets.lets_out >= 0.0) return facets.lets_out;
+  return 1.0 - rough_reflectance(body, cosine, facets.alpha);
 }
 
 struct Leaving {
@@ -38,19 +56,6 @@ vec3 scaled(vec3 radiance, uvec3 ids, vec3 l, GatherScales scale, float radiance
   return max(factor * radiance + rest / radiance_norm, least / radiance_norm);
 }
 
-// Share of the light inside that a surface of normal `n` lets out along `outward`; n: becomes that of a facet where the
-// surface is rough. starts: whether the view ray starts there.
-float let_out(inout Facets facets, vec3 outward, Refraction body, bool starts, inout vec3 n) {
-  if (!is_rough(facets) || !reflects(body.surface)) {
-    return surface_transmittance(clamp(dot(outward, n), 0.0, 1.0), body.surface);
-  }
-  vec3 towards, local;
-  n = facet_seen(facets, n, outward, towards, local);
-  if (starts && facets.lets_out >= 0.0) return facets.lets_out;
-  float reflected = fresnel_reflectance(clamp(dot(towards, local), 0.0, 1.0), body.surface);
-  return 1.0 - reflected * gone_for_good(towards, local, facets.alpha);
-}
-
 // Light that leaves face `face` at barycentric coordinates `l` along `outward`, at a surface of normal `n`. Fresnel and
 // refraction included: radiance over eta^2 is kept. Where enough of a ray comes out behind, it goes on to the next
 // part of the body, the brightest branch first, up to so many `parts`. scale: null: what is gathered counts as it is.
@@ -65,12 +70,13 @@ Leaving leaving(uint face, vec3 l, vec3 outward, vec3 n, GatherScales scale, Fac
     vec3 face_normal = doubled / max(length(doubled), 1e-30);
     if (part > 0u) n = smooth_normal(face, l);
     Refraction body = refraction_behind(BODY.face_kinds, face);
-    float through = let_out(facets, outward, body, part == 0u, n);
+    float through = let_out(facets, outward, n, body, part == 0u);
     if (part == 0u) sum.through = through;
     share *= through;
     TetPoint at = start_on_face(BODY.face_tets.at[face], ids, l);
     bool last = part + 1u == parts;
-    Gathered inside = gather(at, view_ray(outward, n, face_normal, body.surface.eta), !last, facets);
+    vec3 inward = view_ray(outward, n, face_normal, body.surface, facets);
+    Gathered inside = gather(at, inward, !last, facets);
     vec3 radiance = inside.radiance / (body.surface.eta * body.surface.eta);
     sum.radiance += share * (uvec2(scale) == uvec2(0) ? radiance : scaled(radiance, ids, l, scale, body.radiance_norm));
     sum.seen += share * (inside.seen - inside.most.share - inside.second.share);

@@ -8,9 +8,11 @@
 
 #ifdef __cplusplus
 namespace quadgraph::gpu {
+using glm::abs;
 using glm::max;
 using glm::min;
 using glm::normalize;
+using glm::pow;
 #endif
 
 // Of a view with a rough surface: at least that.
@@ -40,17 +42,33 @@ QG_INLINE float gone_for_good(vec3 way, vec3 facet, float alpha) {
   return seen / (seen + smith_lambda(min(cosine, 1.0f), alpha));
 }
 
-// Share of light at that cosine with the normal of the surface that no facet holds up on its way from it (Heitz 2014).
-QG_INLINE float free_of_facets(float cosine, float alpha) {
-  return cosine > 0.0f ? 1.0f / (1.0f + smith_lambda(min(cosine, 1.0f), alpha)) : 0.0f;
+// What follows is of a way over the facets of the surface (Heitz 2016), on the side where
+// it is: 1 outside, -1 inside. Heights are shares of the facets that lie below.
+const float CLEAR_OF_FACETS = 2.0f;
+const float LEAST_BELOW = 1e-6f;
+const float UPRIGHT = 0.9999f, LEVEL = 1e-4f;  // cosines at which Smith's Lambda has a limit
+
+// Height of the next facet that a way at that cosine with the normal of its side meets, from one of height `below`, or
+// CLEAR_OF_FACETS. u: a number in [0, 1).
+QG_INLINE float next_facet(float below, float cosine, float alpha, float u) {
+  float from = min(max(below, LEAST_BELOW), 1.0f - LEAST_BELOW), lean = abs(cosine);
+  if (lean > UPRIGHT) return cosine > 0.0f ? CLEAR_OF_FACETS : u * from;
+  if (lean < LEVEL) return from;
+  float above = smith_lambda(lean, alpha);
+  if (cosine < 0.0f) return from * pow(1.0f - u, 1.0f / (1.0f + above));
+  if (u > 1.0f - pow(from, above)) return CLEAR_OF_FACETS;
+  return min(from * pow(1.0f - u, -1.0f / above), 1.0f);
 }
 
-// Cosine with the normal, on the other side of the surface, of light from `way` that a facet refracts into an index of
-// refraction eta times as high; below 0: another facet has it.
-QG_INLINE float refracted_cosine(vec3 way, vec3 facet, float eta) {
-  float seen = min(max(dot(way, facet), 0.0f), 1.0f);
-  float bent = sqrt(max(1.0f - (1.0f - seen * seen) / (eta * eta), 0.0f));
-  return (way.z - (seen - eta * bent) * facet.z) / eta;
+// A facet that a way on that side meets, turned to where it comes from; u as of visible_facet.
+QG_INLINE vec3 met_facet(vec3 way, float side, float alpha, vec2 u) {
+  return side * visible_facet(-side * way, alpha, u);
+}
+
+// The way through a facet at that cosine with it, by the index of refraction here over that across.
+QG_INLINE vec3 way_through(vec3 way, vec3 facet, float cosine, float ratio) {
+  float across = sqrt(max(1.0f - ratio * ratio * (1.0f - cosine * cosine), 0.0f));
+  return normalize(ratio * way + (ratio * cosine - across) * facet);
 }
 
 #ifdef __cplusplus

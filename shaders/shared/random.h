@@ -17,6 +17,7 @@ QG_INLINE uint hash(uint x) {
 
 // Number `n` of a sequence that fills [0, 1) evenly, and with those of the other dimensions the cube: the additive
 // recurrence by powers of 1 / x, x^7 = x + 1, for up to six of them (Roberts 2018), from a start at random.
+const uint SPREAD_DIMENSIONS = 6u;
 const uint SPREAD_STEPS[6] = {3859688306u, 3468523225u, 3117001274u, 2801104767u, 2517223198u, 2262111973u};
 
 QG_INLINE float spread_number(uint start, uint n, uint dimension) {

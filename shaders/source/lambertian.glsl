@@ -68,9 +68,4 @@ vec3 goes_in(vec3 incoming, vec3 normal, vec3 facet, OpticalSurface surface) {
   return into_face(refracted_on_average(incoming, facet, surface), normal, facet);
 }
 
-// By a facet of that unit normal.
-vec3 refracted_by_facet(vec3 incoming, vec3 normal, vec3 facet, float eta) {
-  return into_face(refracted(incoming, facet, eta), normal, facet);
-}
-
 #endif

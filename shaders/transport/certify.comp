@@ -32,6 +32,7 @@ layout(push_constant, scalar) uniform Block { CertifyPush push; };
 TransportFieldRef field;
 #define FIELD field
 #define BODY field.body
+#define FACET_BY_FACET
 #include "source/fixed_point.glsl"
 #include "transport/entering_light.glsl"
 #include "transport/importance.glsl"
@@ -80,29 +81,48 @@ void weigh(inout Ray ray, uint channel) {
   }
 }
 
+void count_leaving(uint face, vec3 power) {
+  if (scattered || push.g != vec3(0)) {
+    add_power(push.leaving, face, power);
+  } else {
+    unscattered += power;
+  }
+}
+
+// On its way through the air from a face that sees the body, if it has left, or inside.
+void go_on_from(uint face, bool left, vec3 direction, inout Ray ray) {
+  if (left) {
+    ray.power *= sees_body(face) ? enter_again(through_air(face, in_space(ray.at), direction, state), ray) : 0.0;
+  } else {
+    ray.direction = direction;
+  }
+}
+
+// A smooth surface mirrors part of what meets it, and lets out the rest.
+void meet_smooth(inout Ray ray, uint face, vec3 n, OpticalSurface surface) {
+  float cosine = clamp(dot(ray.direction, n), 0.0, 1.0), reflected = internal_reflectance(cosine, surface);
+  vec3 leaving = (1.0 - reflected) * ray.power;
+  count_leaving(face, leaving);
+  bool leaves = sees_body(face) && uniform_number(state) >= reflected;
+  if (!sees_body(face)) ray.power -= leaving;
+  go_on_from(face, leaves, way_on(ray.direction, n, surface, leaves, state), ray);
+}
+
 void meet_surface(inout Ray ray, uint face) {
   vec3 n = outward_normal(face);
-  float cosine = clamp(dot(ray.direction, n), 0.0, 1.0);
-  if (is_open(BODY.face_kinds, face)) {
-    OpticalSurface surface = surface_of(BODY.face_kinds, face);
-    float reflected = surface_reflectance_inside(cosine, surface);
-    vec3 leaving = (1.0 - reflected) * ray.power;
-    if (scattered || push.g != vec3(0)) {
-      add_power(push.leaving, face, leaving);
-    } else {
-      unscattered += leaving;
-    }
-    if (!sees_body(face)) {
-      ray.power -= leaving;
-    } else if (uniform_number(state) >= reflected) {
-      vec3 point = in_space(ray.at);
-      ray.power *= enter_again(through_air(face, point, way_on(ray.direction, n, surface, true, state), state), ray);
-      return;
-    }
-    ray.direction = way_on(ray.direction, n, surface, false, state);
+  if (!is_open(BODY.face_kinds, face)) {
+    ray.direction = normalize(ray.direction - 2.0 * clamp(dot(ray.direction, n), 0.0, 1.0) * n);
     return;
   }
-  ray.direction = normalize(ray.direction - 2.0 * cosine * n);
+  OpticalSurface surface = surface_of(BODY.face_kinds, face);
+  if (surface.roughness == 0.0) {
+    meet_smooth(ray, face, n, surface);
+  } else {
+    vec3 direction = ray.direction;
+    bool leaves = goes_through_facets(true, n, surface, two_numbers(state), direction, state);
+    if (leaves) count_leaving(face, ray.power);
+    go_on_from(face, leaves, direction, ray);
+  }
 }
 
 // sigma_s, all of it, and sigma_a, 1/mm; the body of the rays has it without the forward peak.

@@ -44,6 +44,18 @@ bool enters_reflected(vec3 direction, vec3 facet, uint face, Frame at, inout Ray
   return true;
 }
 
+// By its facets one by one: the ray of so much power that goes in, or enters elsewhere; false where none does.
+bool enters_by_facets(vec3 direction, vec3 facet, uint face, TetPoint point, Frame at, vec3 power, out Ray ray) {
+  ray = start(point, direction, power / surface_transmittance(clamp(-dot(direction, facet), 0.0, 1.0), at.surface));
+  if (goes_through_facets(false, facet, at.surface, two_numbers(state), direction, state)) {
+    ray.direction = into_face(direction, at.normal, facet);
+    return true;
+  }
+  if (!sees_body(face) || dot(direction, at.normal) <= 0.0) return false;
+  ray.power *= enter_again(through_air(face, at.position, direction, state), ray);
+  return ray.power != vec3(0);
+}
+
 // A ray on its way to a face.
 struct Arriving {
   vec3 l;          // barycentric coordinates of where it enters
@@ -78,11 +90,22 @@ void enter(Beam beam, uint face, uint ray, TetPoint point, Frame at, Arriving li
   bool one = even && push.rays == 1u;
   vec3 facet = even ? at.normal : at.facet, direction = light.direction;
   if (push.sky == 0u && !one) direction = incoming(beam.way, ray, at);
-  Ray inside = one ? start_even(beam.way, point, at, light.power)
-                   : start(point, way_in(direction, at.normal, facet, at.surface, state), light.power);
+  Ray inside;
+#ifdef FACET_BY_FACET
+  bool by_facets = !one && at.surface.roughness > 0.0;
+#else
+  bool by_facets = false;
+#endif
+  if (by_facets) {
+    if (!enters_by_facets(direction, facet, face, point, at, light.power, inside)) return;
+  } else if (one) {
+    inside = start_even(beam.way, point, at, light.power);
+  } else {
+    inside = start(point, way_in(direction, at.normal, facet, at.surface, state), light.power);
+  }
   for (uint reflections = 0u; reflections < 2u; ++reflections) {
-    // Of a bundle that one ray stands for no reflection is known.
-    if (reflections == 1u && (one || !enters_reflected(direction, facet, face, at, inside))) break;
+    // Of a bundle that one ray stands for no reflection is known; of facets one by one it is what did not go in.
+    if (reflections == 1u && (one || by_facets || !enters_reflected(direction, facet, face, at, inside))) break;
     go_in(inside);
   }
 }

@@ -3,6 +3,9 @@
 //   BODY   FIELD.body
 // Where other parts of the body can be met outside, chance decides between the ways that a ray can take, each by its
 // share of the power: so the ray keeps all of it and never divides. Elsewhere what leaves is gone.
+// Where it also defines
+//   FACET_BY_FACET
+// light from outside meets the facets of a rough surface one by one, in place of what is known of them all.
 #ifndef QUADGRAPH_TRANSPORT_SURFACE_GLSL
 #define QUADGRAPH_TRANSPORT_SURFACE_GLSL
 
@@ -39,8 +42,9 @@ TetPoint entrance_point(Entrance entry) {
 
 // Inside, of light along `incoming` that goes in at a face by facets about the normal `by`, by one of them.
 vec3 way_in(vec3 incoming, vec3 normal, vec3 by, OpticalSurface surface, inout uint state) {
-  vec3 facet = facet_that_lets_in(incoming, by, surface, state);
-  return refracted_by_facet(incoming, normal, facet, surface.eta);
+  vec3 way = incoming;
+  bool found = surface.roughness > 0.0 && way_by_facets(false, true, by, surface, two_numbers(state), way, state);
+  return into_face(found ? way : refracted(incoming, by, surface.eta), normal, by);
 }
 
 // mm
@@ -48,6 +52,22 @@ vec3 in_space(TetPoint at) {
   uvec4 ids = BODY.tets.at[at.tet];
   return at.l.x * BODY.vertices.at[ids.x] + at.l.y * BODY.vertices.at[ids.y] + at.l.z * BODY.vertices.at[ids.z] +
          at.l.w * BODY.vertices.at[ids.w];
+}
+
+// Turns light from outside into what goes on from a face of that normal; whether that goes in.
+bool goes_in_at(uint face, vec3 n, inout vec3 direction, inout uint state) {
+  if (!is_open(BODY.face_kinds, face)) {
+    direction = normalize(direction + 2.0 * clamp(-dot(direction, n), 0.0, 1.0) * n);
+    return false;
+  }
+  OpticalSurface surface = surface_of(BODY.face_kinds, face);
+#ifdef FACET_BY_FACET
+  if (surface.roughness > 0.0) return goes_through_facets(false, n, surface, two_numbers(state), direction, state);
+#endif
+  float cosine = clamp(-dot(direction, n), 0.0, 1.0);
+  bool goes_in = uniform_number(state) < surface_transmittance(cosine, surface);
+  direction = goes_in ? way_in(direction, n, n, surface, state) : normalize(direction + 2.0 * cosine * n);
+  return goes_in;
 }
 
 // From a point of `face` along `direction` through the air, past what only reflects it, until the ray enters the body
@@ -58,13 +78,9 @@ Entrance through_air(uint face, vec3 point, vec3 direction, inout uint state) {
     if (hit.face == NO_FACE || !hit.outside) break;
     face = hit.face;
     point += hit.distance * direction;
-    vec3 n = outward_normal(face);
-    float cosine = clamp(-dot(direction, n), 0.0, 1.0);
-    OpticalSurface surface = surface_of(BODY.face_kinds, face);
-    if (is_open(BODY.face_kinds, face) && uniform_number(state) < surface_transmittance(cosine, surface)) {
-      return Entrance(face, clamp(hit.place, vec2(0), vec2(1)), way_in(direction, n, n, surface, state));
+    if (goes_in_at(face, outward_normal(face), direction, state)) {
+      return Entrance(face, clamp(hit.place, vec2(0), vec2(1)), direction);
     }
-    direction = normalize(direction + 2.0 * cosine * n);
   }
   return Entrance(NO_FACE, vec2(0), direction);
 }

@@ -61,6 +61,15 @@ TEST_CASE("what is out of balance beyond the printed error is never converged, a
   CHECK(judged(report, {}, {}).stopped.empty());
 }
 
+TEST_CASE("a channel with little light counts by it in the balance, as in the error") {
+  SolveReport report = good();
+  report.energy = {.entered = {1, 1, 0.1}, .scattered_out = {0.7, 0.7, 0.02}, .absorbed = {0.3, 0.3, 0.03}};
+  report.error = ErrorEstimate{.whole = 0.04, .unlit = 0.01, .dimmest = 0.01};
+  CHECK(judged(report, {}, {}).stopped.empty());
+  report.error->whole = 0.03;
+  CHECK(judged(report, {}, {}).stopped.starts_with("out of balance: 3.5% of the light"));
+}
+
 TEST_CASE("a body that no light reaches is named with the lights and why") {
   SolveReport dark = good();
   dark.energy = {};

@@ -76,11 +76,11 @@ def test_solves_know_what_the_walk_lets_through(eta, alpha):
     walked_in, walked_out = (
         np.array([through(float(c), side, eta, alpha)[0] for c in cosines]) for side in (False, True)
     )
-    assert np.abs(known_in - walked_in).max() < 0.03
-    assert np.sqrt(2 * (weights * cosines * (known_out - walked_out) ** 2).sum()) < 0.02
+    assert np.abs(known_in - walked_in).max() < 0.015
+    assert np.sqrt(2 * (weights * cosines * (known_out - walked_out) ** 2).sum()) < 0.015
     for n in (1, 2, 3):
         moment = float((weights * cosines**n * (1 - walked_out)).sum())
-        assert core.fresnel_moment(n, eta, alpha) == pytest.approx(moment, rel=0.02)
+        assert core.fresnel_moment(n, eta, alpha) == pytest.approx(moment, rel=0.015)
 
 
 def blocks(picture: np.ndarray) -> np.ndarray:
@@ -138,5 +138,18 @@ def test_a_clear_lens_is_frosted(tmp_path, short):
     ball = icosphere(3, RADIUS)
     lens = Surface(ball.vertices * (1, 1, 0.25), ball.triangles)
     found = errors(tmp_path, lens, WALKS // 2 if short else WALKS, 0.3, 0.06, 0.02, 1.5)
-    assert found["filled", "rough"] < 0.07
-    assert found["filled", "smooth"] > 2 * found["filled", "rough"]
+    assert found["filled", "rough"] < 0.03
+    assert found["filled", "smooth"] > 5 * found["filled", "rough"]
+
+
+@pytest.mark.parametrize("eta", [1.2, 1.5])
+def test_the_unlit_side_is_what_walks_from_facet_to_facet_find(tmp_path, eta):
+    """At grazing incidence most light meets several facets before it is inside, and goes deeper than by the first."""
+    write_levels(tmp_path / "ball.qgraph", [icosphere(3, RADIUS)], rays=64)
+    with Engine(tmp_path / "ball.qgraph", device="cpu") as engine:
+        engine.material = f"sigma_s_prime=0.3,sigma_a=0.3,eta={eta}"
+        engine.lights = ["directional:0.5,-0.5,-1:2.5"]
+        engine.set_light_roughness(0.6)
+        certificate = engine.solve(certify=3).certificate
+    assert abs(certificate.whole.power) < 0.01 + 3 * certificate.whole.power_noise
+    assert abs(certificate.unlit.power) < 0.03 + 3 * certificate.unlit.power_noise
