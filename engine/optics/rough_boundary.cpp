@@ -10,6 +10,15 @@
 namespace quadgraph {
 namespace {
 
+// Share of what a facet reflects along `way` that no other facet holds up on either side of it (height-correlated,
+// Heitz 2014). What is held up goes in after all: what is mirrored and what comes through are all of the light.
+float gone_for_good(const glm::vec3& way, const glm::vec3& facet, float alpha) {
+  const float cosine = 2.0f * glm::dot(way, facet) * facet.z - way.z;  // of what is mirrored
+  if (cosine <= 0.0f) return 0.0f;
+  const float seen = 1.0f + gpu::smith_lambda(way.z, alpha);
+  return seen / (seen + gpu::smith_lambda(std::min(cosine, 1.0f), alpha));
+}
+
 // Of facets that reflect so much of light by its cosine with them.
 double mean_reflectance(double cosine, double alpha, const std::function<double(double)>& reflected) {
   if (alpha == 0.0) return reflected(cosine);
@@ -17,7 +26,7 @@ double mean_reflectance(double cosine, double alpha, const std::function<double(
   const auto rough = static_cast<float>(alpha);
   return mean_over_facets<double>(way, rough, [&](const glm::vec3& facet) {
     const double seen = std::clamp(static_cast<double>(glm::dot(way, facet)), 0.0, 1.0);
-    return reflected(seen) * static_cast<double>(gpu::gone_for_good(way, facet, rough));
+    return reflected(seen) * static_cast<double>(gone_for_good(way, facet, rough));
   });
 }
 

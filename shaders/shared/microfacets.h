@@ -33,15 +33,6 @@ QG_INLINE vec3 visible_facet(vec3 way, float alpha, vec2 u) {
   return normalize(vec3(alpha * cap.x, alpha * cap.y, max(cap.z, 1e-6f)));
 }
 
-// Share of what a facet reflects along `way` that no other facet holds up on either side of it (height-correlated,
-// Heitz 2014). What is held up goes in after all: what is mirrored and what comes through are all of the light.
-QG_INLINE float gone_for_good(vec3 way, vec3 facet, float alpha) {
-  float cosine = 2.0f * dot(way, facet) * facet.z - way.z;  // of what is mirrored
-  if (cosine <= 0.0f) return 0.0f;
-  float seen = 1.0f + smith_lambda(way.z, alpha);
-  return seen / (seen + smith_lambda(min(cosine, 1.0f), alpha));
-}
-
 // What follows is of a way over the facets of the surface (Heitz 2016), on the side where
 // it is: 1 outside, -1 inside. Heights are shares of the facets that lie below.
 const float CLEAR_OF_FACETS = 2.0f;
